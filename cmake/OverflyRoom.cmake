@@ -24,6 +24,25 @@ endfunction()
 # quarter (-O2) or a third (-O1) of the compiler's time less.
 function(overfly_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
+  overfly_precompile(${target} ${level})
+endfunction()
+
+# overfly_precompile(TARGET LEVEL)
+#
+# Lets TARGET use the headers that are compiled once for its level of optimisation
+# (cmake/precompiled). Sources with other options need the property SKIP_PRECOMPILE_HEADERS.
+function(overfly_precompile target level)
+  if(TARGET overfly_common_headers_${level})
+    target_precompile_headers(${target} REUSE_FROM overfly_common_headers_${level})
+  endif()
+endfunction()
+
+# overfly_special_optimisation(LEVEL files...)
+#
+# Sources that are optimised otherwise than the rest of their target.
+function(overfly_special_optimisation level)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Release>:-O${level}> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # overfly_test(NAME [LIBS targets...] [TIMEOUT seconds] [FOLDERS subfolders...])

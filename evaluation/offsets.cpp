@@ -1,11 +1,11 @@
 #include "evaluation/offsets.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/algebra/decompositions.hpp"
 #include "core/motion/pose.hpp"
 #include "evaluation/association.hpp"
 
@@ -148,13 +148,12 @@ std::optional<MountOffset> mount_offset(const std::vector<MatchedPose>& matches)
     const Eigen::Quaterniond R_world_estimated = S_world_vo->rotation * match.T_vo_camera.rotation;
     sum += (R_world_estimated.conjugate() * match.T_world_camera.rotation).toRotationMatrix();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd3 parts = svd(sum);
   Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-  sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  sign(2, 2) = (parts.U * parts.V.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   MountOffset offset;
   offset.R_estimated_true =
-      Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * sign * svd.matrixV().transpose()))
-          .normalized();
+      Eigen::Quaterniond(Eigen::Matrix3d(parts.U * sign * parts.V.transpose())).normalized();
   offset.rotation_rmse_before_deg =
       rotation_rmse_deg(matches, S_world_vo->rotation, Eigen::Quaterniond::Identity());
   offset.rotation_rmse_after_deg =

@@ -2,11 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
+
+#include "core/algebra/decompositions.hpp"
 
 namespace overfly::evaluation {
 namespace {
@@ -114,21 +115,20 @@ Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
   const Moments m = moments_of(matches, options.hold_first);
   if (Status status = check_motion(matches, m, options.with_scale); !status) return status.error();
 
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.sigma_xy,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d& D = svd.singularValues();  // (39)
+  const Svd3 parts = svd(m.sigma_xy);  // (39)
+  const Eigen::Vector3d& D = parts.values;
   if (D(0) <= kLineRatio * std::sqrt(m.variance_x * m.variance_y)) {
     return Error{ErrorCode::kInvalidArgument,
                  "the estimate's motion is not correlated with the truth's: the rotation cannot "
                  "be determined"};
   }
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) S(2) = -1.0;  // (43)
-  Eigen::Matrix3d R = svd.matrixU() * S.asDiagonal() * svd.matrixV().transpose();    // (40)
+  if (parts.U.determinant() * parts.V.determinant() < 0.0) S(2) = -1.0;  // (43)
+  Eigen::Matrix3d R = parts.U * S.asDiagonal() * parts.V.transpose();    // (40)
   const double ratio = straightness(m, D);
   if (remarks != nullptr && ratio < kStraightRatio) remarks->degenerate = straight_text(ratio);
   if (D(1) <= kLineRatio * D(0)) {
-    R = turned_to_orientations(matches, R, svd.matrixU().col(0));
+    R = turned_to_orientations(matches, R, parts.U.col(0));
     if (remarks != nullptr) {
       remarks->notes.emplace_back(
           "the positions lie on a line: the rotation about it is taken from the orientations");

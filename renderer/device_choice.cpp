@@ -1,22 +1,19 @@
 #include "renderer/device_choice.hpp"
 
 #include <algorithm>
-#include <regex>
 
 #include "core/text/pattern.hpp"
 
 namespace overfly::renderer {
 
 Result<DeviceRequest> DeviceRequest::parse(const std::string& text) {
-  static const std::regex& number = compiled_pattern("[0-9]{1,3}");
-  static const std::regex& address =
-      compiled_pattern("([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]");
+  constexpr const char* kPciAddress = "([0-9a-fA-F]{4,8}:)?[0-9a-fA-F]{2}:[0-9a-fA-F]{2}\\.[0-7]";
   DeviceRequest request;
   if (text == "software") {
     request.software = true;
-  } else if (std::regex_match(text, number)) {
+  } else if (matches_pattern(text, "[0-9]{1,3}")) {
     request.index = std::stoi(text);
-  } else if (std::regex_match(text, address)) {
+  } else if (matches_pattern(text, kPciAddress)) {
     request.pci_address = text;
     std::transform(text.begin(), text.end(), request.pci_address.begin(), [](char c) {
       return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;

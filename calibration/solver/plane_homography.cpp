@@ -1,9 +1,9 @@
 #include "calibration/solver/plane_homography.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
+
+#include "core/algebra/decompositions.hpp"
 
 namespace overfly::calibration {
 namespace {
@@ -31,7 +31,7 @@ std::optional<Eigen::Matrix3d> homography(const std::vector<PlanePair>& pairs) {
   const auto N_plane = normalisation(pairs, &PlanePair::plane);
   const auto N_image = normalisation(pairs, &PlanePair::image);
   if (!N_plane || !N_image) return std::nullopt;
-  Eigen::Matrix<double, 9, 9> AtA = Eigen::Matrix<double, 9, 9>::Zero();
+  Matrix9d AtA = Matrix9d::Zero();
   for (const PlanePair& pair : pairs) {
     const Eigen::Vector3d p = *N_plane * pair.plane.homogeneous();
     const Eigen::Vector3d q = *N_image * pair.image.homogeneous();
@@ -40,10 +40,10 @@ std::optional<Eigen::Matrix3d> homography(const std::vector<PlanePair>& pairs) {
         Eigen::RowVector3d::Zero(), -q.x() * p.transpose();
     AtA += rows.transpose() * rows;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(AtA);
+  const SymmetricEigen<9> eigen = symmetric_eigen(AtA);
   // A second vanishing eigenvalue: the points do not determine H.
-  if (!(eigen.eigenvalues()[1] > 1e-10 * eigen.eigenvalues()[8])) return std::nullopt;
-  const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors().col(0);
+  if (!(eigen.values[1] > 1e-10 * eigen.values[8])) return std::nullopt;
+  const Vector9d h = eigen.vectors.col(0);
   Eigen::Matrix3d H;
   H << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
   return Eigen::Matrix3d(N_image->inverse() * H * *N_plane);
@@ -58,8 +58,8 @@ std::optional<Pose> plane_pose(const Eigen::Matrix3d& H) {
   Q.col(0) = scale * H.col(0);
   Q.col(1) = scale * H.col(1);
   Q.col(2) = Q.col(0).cross(Q.col(1));
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Q, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+  const Svd3 parts = svd(Q);
+  const Eigen::Matrix3d R = parts.U * parts.V.transpose();
   if (!(R.determinant() > 0.0)) return std::nullopt;
   return Pose{Eigen::Quaterniond(R).normalized(), t};
 }

@@ -1,12 +1,13 @@
 #include "calibration/solver/solve.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "core/algebra/decompositions.hpp"
 
 namespace overfly::calibration {
 namespace {
@@ -220,11 +221,11 @@ std::optional<Eigen::MatrixXd> covariance(const Problem& problem, const State& s
   const Eigen::VectorXd scale = normals.A.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return std::nullopt;
   const Eigen::MatrixXd scaled = scale.asDiagonal() * r->S * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 1e-13)) return std::nullopt;
-  return Eigen::MatrixXd(scale.asDiagonal() * eigen.eigenvectors() *
-                         eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                         eigen.eigenvectors().transpose() * scale.asDiagonal());
+  const auto eigen = symmetric_eigen(scaled);
+  if (!eigen || !(eigen->values[0] > 1e-13)) return std::nullopt;
+  return Eigen::MatrixXd(scale.asDiagonal() * eigen->vectors *
+                         eigen->values.cwiseInverse().asDiagonal() * eigen->vectors.transpose() *
+                         scale.asDiagonal());
 }
 
 Error undetermined(const std::string& reason) {

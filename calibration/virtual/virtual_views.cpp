@@ -6,6 +6,7 @@
 #include <random>
 
 #include "calibration/virtual/virtual_board.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::calibration {
 namespace {
@@ -43,8 +44,7 @@ class ViewDraw {
     if (!ray) return std::nullopt;
     const Eigen::Vector3d axis(std::cos(azimuth), std::sin(azimuth), 0.0);
     // Relative to the ray through the board's centre, so that it faces the camera everywhere.
-    const Eigen::Quaterniond facing =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *ray);
+    const Eigen::Quaterniond facing = shortest_rotation(Eigen::Vector3d::UnitZ(), *ray);
     const Eigen::Quaterniond R =
         facing * Eigen::AngleAxisd(tilt, axis) * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d centre_m(

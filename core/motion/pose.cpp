@@ -51,6 +51,20 @@ double rotation_angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond&
   return 2.0 * std::atan2(difference.vec().norm(), std::abs(difference.w()));
 }
 
+Eigen::Quaterniond shortest_rotation(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d b = to.normalized();
+  // With the unit vector m half way between them, the rotation is the quaternion (a . m, a x m).
+  const Eigen::Vector3d sum = a + b;
+  if (sum.norm() < 1e-12) {
+    const Eigen::Vector3d axis = a.unitOrthogonal();
+    return {0.0, axis.x(), axis.y(), axis.z()};
+  }
+  const Eigen::Vector3d m = sum.normalized();
+  const Eigen::Vector3d v = a.cross(m);
+  return Eigen::Quaterniond(a.dot(m), v.x(), v.y(), v.z()).normalized();
+}
+
 namespace {
 
 /// R_world_ned: north-east-down axes expressed in east-north-up.

@@ -40,6 +40,11 @@ struct Similarity {
 /// The geodesic angle between two rotations, in [0, pi] [rad].
 [[nodiscard]] double rotation_angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 
+/// The rotation by the smallest angle that turns the direction of `from` to that of `to`; lengths
+/// do not matter, but must not be 0. Opposite directions are turned about any perpendicular axis.
+[[nodiscard]] Eigen::Quaterniond shortest_rotation(const Eigen::Vector3d& from,
+                                                   const Eigen::Vector3d& to);
+
 /// Roll, pitch, yaw of the body (forward-right-down) relative to local north-east-down,
 /// intrinsic Z-Y-X [rad]. Yaw 0 = north, clockwise positive; roll > 0 = right wing down.
 struct RollPitchYaw {

@@ -1,11 +1,11 @@
 #include "flight/dynamics/modes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/algebra/decompositions.hpp"
 #include "flight/dynamics/steady_motion.hpp"
 
 namespace overfly::dynamics {
@@ -30,9 +30,7 @@ FlightPoint displaced(const Trim& trim, const Deviation& x, const Eigen::Vector4
 }
 
 std::array<Complex, 4> eigenvalues_by_size(const Eigen::Matrix4d& A) {
-  const Eigen::EigenSolver<Eigen::Matrix4d> solver(A, false);
-  std::array<Complex, 4> values;
-  for (int i = 0; i < 4; ++i) values[static_cast<std::size_t>(i)] = solver.eigenvalues()(i);
+  std::array<Complex, 4> values = eigenvalues(A);
   // Conjugates stay neighbours: they are equal in size and in real part.
   std::sort(values.begin(), values.end(), [](const Complex& a, const Complex& b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();

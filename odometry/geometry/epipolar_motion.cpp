@@ -1,9 +1,8 @@
 // Computes motions from homographies and essential matrices.
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "core/algebra/decompositions.hpp"
 #include "odometry/geometry/two_view.hpp"
 
 namespace overfly::odometry {
@@ -53,15 +52,14 @@ Eigen::Matrix3d essential_of_five(const std::vector<Eigen::Vector2d>& first,
 }
 
 std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> scale(H_calibrated);
   // The second singular value of R + t n^T / d is one.
-  Eigen::Matrix3d H = H_calibrated / scale.singularValues()(1);
+  Eigen::Matrix3d H = H_calibrated / svd(H_calibrated).values(1);
   if (H.determinant() < 0.0) H = -H;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(H.transpose() * H);
-  const double s1 = eigen.eigenvalues()(2);  // squares of the singular values
-  const double s3 = eigen.eigenvalues()(0);
+  const SymmetricEigen<3> eigen = symmetric_eigen(Eigen::Matrix3d(H.transpose() * H));
+  const double s1 = eigen.values(2);  // squares of the singular values
+  const double s3 = eigen.values(0);
   if (s1 - s3 < kNoMotion) return {};
-  Eigen::Matrix3d V = eigen.eigenvectors().rowwise().reverse();
+  Eigen::Matrix3d V = eigen.vectors.rowwise().reverse();
   if (V.determinant() < 0.0) V = -V;
   const double a = std::sqrt(std::max(0.0, 1.0 - s3) / (s1 - s3));
   const double b = std::sqrt(std::max(0.0, s1 - 1.0) / (s1 - s3));
@@ -80,9 +78,7 @@ std::vector<Pose> motions_of_homography(const Eigen::Matrix3d& H_calibrated) {
 }
 
 std::vector<Pose> motions_of_essential(const Eigen::Matrix3d& E) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d U = svd.matrixU();
-  Eigen::Matrix3d V = svd.matrixV();
+  auto [U, values, V] = svd(E);
   if (U.determinant() < 0.0) U = -U;
   if (V.determinant() < 0.0) V = -V;
   Eigen::Matrix3d W;

@@ -1,20 +1,17 @@
 #include "odometry/geometry/two_view.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "core/algebra/decompositions.hpp"
 #include "odometry/geometry/triangulation.hpp"
 
 namespace overfly::odometry {
 namespace {
 
 using Pixels = std::vector<Eigen::Vector2d>;
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 constexpr int kRansacRounds = 200;
 // Limits of the chi-square distribution at 5 %: two degrees for a transfer, one for a line.
@@ -28,8 +25,7 @@ constexpr double kPlanarRatio = 0.45;
 constexpr double kMostAlike = 0.95;
 
 Eigen::Matrix3d from_null_vector(const Matrix9d& normal_matrix) {
-  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(normal_matrix);
-  const Vector9d h = eigen.eigenvectors().col(0);
+  const Vector9d h = symmetric_eigen(normal_matrix).vectors.col(0);
   Eigen::Matrix3d m;
   m << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), h(8);
   return m;
@@ -53,9 +49,8 @@ void add_epipolar_row(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Matrix
 }
 
 Eigen::Matrix3d essential_of(const Matrix9d& normal_matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from_null_vector(normal_matrix),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * svd.matrixV().transpose();
+  const Svd3 parts = svd(from_null_vector(normal_matrix));
+  return parts.U * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * parts.V.transpose();
 }
 
 /// Draws `count` different indices below `size`.

@@ -1,10 +1,12 @@
 #include "renderer/camera/image_parts.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/algebra/decompositions.hpp"
+#include "core/motion/pose.hpp"
 
 namespace overfly::renderer {
 
@@ -50,7 +52,7 @@ std::optional<Eigen::Vector2d> plane_per_pixel(const CameraModel& camera,
     if (!before || !after) return std::nullopt;
     J.col(axis) = (*after - *before) / (2.0 * kStepPx);
   }
-  return Eigen::JacobiSVD<Eigen::Matrix2d>(J).singularValues();
+  return singular_values(J);
 }
 
 /// A pinhole image of the rays through a part's rectangle, looking at its centre.
@@ -58,8 +60,7 @@ void aim_through_lens(const CameraModel& camera, double lod_shift, ImagePart& pa
   const Eigen::Vector2d middle(part.left_px + 0.5 * (part.width_px - 1),
                                part.top_px + 0.5 * (part.height_px - 1));
   const Eigen::Vector3d axis = camera.ray(middle).value_or(Eigen::Vector3d::UnitZ());
-  part.R_source_camera =
-      Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  part.R_source_camera = shortest_rotation(axis, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   Eigen::AlignedBox2d box;
   double finest = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& pixel : probe_pixels(part)) {

@@ -1,6 +1,5 @@
 #include "renderer/probes/registration.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -8,6 +7,8 @@
 #include <cstdlib>
 #include <optional>
 #include <vector>
+
+#include "core/algebra/decompositions.hpp"
 
 namespace overfly::renderer {
 namespace {
@@ -73,8 +74,8 @@ std::optional<GreyPatch> make_patch(const Image& seen,
     }
   }
   const double pixels = static_cast<double>(patch.values.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(H, Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues()(0) < o.min_texture * pixels) return std::nullopt;
+  // Both are at least 0, therefore they are also the eigenvalues.
+  if (singular_values(H)(1) < o.min_texture * pixels) return std::nullopt;
   patch.inverse_hessian = H.inverse();
   return patch;
 }

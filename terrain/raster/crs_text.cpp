@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <regex>
 #include <sstream>
 #include <string_view>
 
@@ -16,9 +15,10 @@ namespace {
 constexpr std::size_t kLongest = 32'768;  ///< the longest WKT of EPSG has about 20 000 characters
 
 bool is_code(const std::string& text) {
-  static const std::regex& code = compiled_pattern(
-      "(EPSG|ESRI|IGNF|OGC|IAU_2015):[A-Za-z0-9_]{1,40}(\\+[0-9]{1,10})?", std::regex::icase);
-  return text.size() <= 80 && std::regex_match(text, code);
+  return text.size() <= 80 &&
+         matches_pattern(text,
+                         "(EPSG|ESRI|IGNF|OGC|IAU_2015):[A-Za-z0-9_]{1,40}(\\+[0-9]{1,10})?",
+                         LetterCase::kAny);
 }
 
 bool is_wkt(const std::string& text) {

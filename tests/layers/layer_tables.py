@@ -25,6 +25,7 @@ ODOMETRY_SHARED = [*ODOMETRY, "odometry/image", "odometry/geometry", "odometry/a
 # with all below it ("core/"), or one file.
 MAY_INCLUDE = {
     "core": [],
+    "core/algebra": ["core"],
     "core/outside": ["core"],
     "core/text": ["core", "core/outside"],
     "core/motion": ["core", "core/text"],

@@ -80,6 +80,25 @@ TEST(RotationAngle, IsExactNearZeroAndNearPi) {
   }
 }
 
+TEST(ShortestRotation, TurnsOneDirectionToTheOtherByTheAngleBetweenThem) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d from(normal(engine), normal(engine), normal(engine));
+    // Every third pair is almost opposite, every other third almost the same.
+    const Eigen::Vector3d near_from = from * (i % 3 == 0 ? -2.0 : 3.0) +
+                                      1e-9 * Eigen::Vector3d(normal(engine), normal(engine), 1.0);
+    const Eigen::Vector3d to =
+        i % 3 == 2 ? Eigen::Vector3d(normal(engine), normal(engine), normal(engine)) : near_from;
+    const Eigen::Quaterniond R = shortest_rotation(from, to);
+    EXPECT_LT((R * from.normalized() - to.normalized()).norm(), 1e-12);
+    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+    EXPECT_NEAR(rotation_angle_rad(Eigen::Quaterniond::Identity(), R), angle, 1e-7);
+  }
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  EXPECT_LT((shortest_rotation(x, -x) * x + x).norm(), 1e-12);
+}
+
 TEST(WrapPi, KeepsPlusPiAndFoldsTheRest) {
   EXPECT_DOUBLE_EQ(wrap_pi(kPi), kPi);
   EXPECT_DOUBLE_EQ(wrap_pi(-kPi), kPi);
