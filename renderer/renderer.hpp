@@ -129,10 +129,32 @@ struct SceneContent {
   struct Frustum {
     PinholeCamera camera;
     Pose T_world_camera;
+    bool edges = true;      ///< from the optical centre to the corners on the ground
     bool footprint = true;  ///< outline of the image on the ground
+  };
+  /// A camera's image, laid onto the ground that the camera sees: each point of the ground gets the
+  /// colour of its pixel, through the camera's lens.
+  struct Projection {
+    std::shared_ptr<const Image> image;  ///< grey or RGB, of the camera's size
+    CameraModel camera;
+    /// While the first and the last row were exposed; in between the camera moves evenly.
+    Pose T_world_camera_first;
+    Pose T_world_camera_last;
+    /// Depth of the ground in an image of the same view, usually smaller: ground that lies behind
+    /// it is hidden from the camera and keeps its own colour.
+    std::shared_ptr<const DepthImage> depth;
+  };
+  /// A straight line of constant width in the image.
+  struct Line {
+    Eigen::Vector3d from_world;
+    Eigen::Vector3d to_world;
+    std::array<float, 3> rgb{1.0F, 1.0F, 1.0F};
+    double width_px = 2.0;
   };
   std::vector<Aircraft> aircraft;
   std::optional<Frustum> frustum;
+  std::optional<Projection> projection;
+  std::vector<Line> lines;
   std::vector<Ribbon> ribbons;
   /// Map points of an estimator, world frame [m].
   std::vector<Eigen::Vector3f> points;

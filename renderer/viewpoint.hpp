@@ -33,6 +33,22 @@ struct Viewpoint {
                                  double up_azimuth_rad,
                                  double distance_m);
 
+/// Looks ahead from above the cockpit and moves with the aircraft.
+/// @param azimuth_rad, elevation_rad  of the line of sight relative to the nose, to the right and
+/// up
+[[nodiscard]] Pose onboard_viewpoint(const Pose& T_world_body,
+                                     double azimuth_rad,
+                                     double elevation_rad);
+
+/// Looks from anywhere, upright. @param azimuth_rad  of the line of sight, clockwise from north
+/// @param elevation_rad  of the line of sight above the horizon, in [-pi/2, pi/2]
+/// @param min_above_m  the camera is raised to at least this above the ground
+[[nodiscard]] Pose free_viewpoint(const Eigen::Vector3d& eye_world,
+                                  double azimuth_rad,
+                                  double elevation_rad,
+                                  double min_above_m,
+                                  const HeightQuery& ground);
+
 /// A camera at `eye` that looks at `target`, upright.
 /// @param up_world  used where the line of sight is within 0.001 rad of the vertical
 [[nodiscard]] Pose look_at(const Eigen::Vector3d& eye_world,

@@ -39,6 +39,8 @@ class CameraModel {
 
   [[nodiscard]] const PinholeCamera& pinhole() const { return pinhole_; }  ///< size and K
   [[nodiscard]] const Distortion& distortion() const { return distortion_; }
+  /// The ideal radius at which the distorted radius stops growing; infinity if it always grows.
+  [[nodiscard]] double max_radius() const { return max_radius_; }
 
   /// Errors: kInvalidArgument naming the field: those of PinholeCamera::validate, a coefficient
   /// that is not finite, or a distortion that folds the image (the distorted radius must grow with

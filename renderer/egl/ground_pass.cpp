@@ -1,6 +1,7 @@
 #include "renderer/egl/ground_pass.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -52,17 +53,27 @@ void main() {
 }
 )";
 
-constexpr const char* kHazySource = R"(#version 330 core
+constexpr const char* kHazyVersion = "#version 330 core\n";
+
+constexpr const char* kNoProjectionSource = R"(
+bool seen_by_camera(vec3 place, out vec3 seen) { return false; }
+)";
+
+constexpr const char* kHazySource = R"(
 uniform sampler2D tile;
 uniform bool textured;
 uniform vec3 haze;
 in vec2 uv;
+in vec3 place_m;
 in float clarity;
 out vec4 colour;
 const vec3 bare = vec3(0.44, 0.46, 0.39);
 void main() {
   vec3 ground = bare;
-  if (textured) {
+  vec3 seen;
+  if (seen_by_camera(place_m, seen)) {
+    ground = seen;
+  } else if (textured) {
     vec4 texel = texture(tile, uv);
     ground = mix(bare, texel.rgb, texel.a);
   }
@@ -92,17 +103,27 @@ Result<GroundPass> GroundPass::create() {
   if (!colour.ok()) return colour.error();
   Result<GlProgram> airy = GlProgram::link(kGroundVertexSource, kAirySource);
   if (!airy.ok()) return airy.error();
-  Result<GlProgram> hazy = GlProgram::link(kGroundVertexSource, kHazySource);
+  const std::string plain = std::string(kHazyVersion) + kNoProjectionSource + kHazySource;
+  Result<GlProgram> hazy = GlProgram::link(kGroundVertexSource, plain.c_str());
   if (!hazy.ok()) return hazy.error();
+  const std::string with_image = std::string(kProjectionSource) + kHazySource;
+  Result<GlProgram> projected = GlProgram::link(kGroundVertexSource, with_image.c_str());
+  if (!projected.ok()) return projected.error();
   Result<GlProgram> depth = GlProgram::link(kGroundVertexSource, kDepthSource);
   if (!depth.ok()) return depth.error();
-  return GroundPass(std::move(*colour), std::move(*airy), std::move(*hazy), std::move(*depth));
+  return GroundPass(std::move(*colour),
+                    std::move(*airy),
+                    std::move(*hazy),
+                    std::move(*projected),
+                    std::move(*depth));
 }
 
-GroundPass::GroundPass(GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram depth)
+GroundPass::GroundPass(
+    GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram projected, GlProgram depth)
     : colour_(std::move(colour)),
       airy_(std::move(airy)),
       hazy_(std::move(hazy)),
+      projected_(std::move(projected)),
       depth_(std::move(depth)),
       vertex_array_(GlVertexArray::make()),
       vertices_(GlBuffer::make()),
@@ -152,10 +173,13 @@ const GlProgram& GroundPass::use_program(const GroundLook& look, const PinholeCa
   const bool plain = look.extinction_per_m == 0.0 &&
                      std::all_of(bias.begin(), bias.end(), [](float b) { return b == 0.0F; });
   const GlProgram* program = plain ? &colour_ : &airy_;
-  if (look.output == GroundLook::Output::kHazyColour) program = &hazy_;
+  if (look.output == GroundLook::Output::kHazyColour) {
+    program = look.projection == nullptr ? &hazy_ : &projected_;
+  }
   if (look.output == GroundLook::Output::kDepthM) program = &depth_;
   program->use();
   set_projection(*program, camera);
+  if (program == &projected_) look.projection->use(*program);
   glUniform3fv(program->uniform("haze"), 1, kHazeRgb);
   glUniform1f(program->uniform("extinction"), static_cast<float>(look.extinction_per_m));
   glUniform3fv(program->uniform("airlight"), 1, look.airlight.data());

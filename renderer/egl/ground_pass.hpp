@@ -8,6 +8,7 @@
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
 #include "renderer/egl/gl_program.hpp"
+#include "renderer/egl/image_projection.hpp"
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/ground/ground_mesh.hpp"
 #include "renderer/renderer.hpp"
@@ -40,6 +41,8 @@ struct GroundLook {
   /// encoding.
   double extinction_per_m = 0.0;
   std::array<float, 3> airlight{};
+  /// For kHazyColour: an image on the ground; null = none.
+  const ImageProjection* projection = nullptr;
   /// For kColour: added to the level of detail at the image's corners, bilinear in between.
   std::array<float, 4> lod_bias{};
 };
@@ -56,12 +59,13 @@ class GroundPass {
               const GroundLook& look);
 
  private:
-  GroundPass(GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram depth);
+  GroundPass(
+      GlProgram colour, GlProgram airy, GlProgram hazy, GlProgram projected, GlProgram depth);
   Status find_textures(const GroundMesh& mesh, TileTextures& textures, const GroundLook& look);
   const GlProgram& use_program(const GroundLook& look, const PinholeCamera& camera);
   void upload(const GroundMesh& mesh);
 
-  GlProgram colour_, airy_, hazy_, depth_;
+  GlProgram colour_, airy_, hazy_, projected_, depth_;
   GlVertexArray vertex_array_;
   GlBuffer vertices_, indices_;
   std::vector<DrawnTile> tiles_;  // of the batches being drawn

@@ -161,6 +161,12 @@ Result<Image> ScenePass::draw(const SceneContent& content,
   for (const Eigen::Vector3f& point : content.points) {
     solid.add_mark(view.camera_from_world(point.cast<double>()), 3.0, point_colour());
   }
+  for (const SceneContent::Line& line : content.lines) {
+    solid.add_line(view.camera_from_world(line.from_world),
+                   view.camera_from_world(line.to_world),
+                   line.width_px,
+                   Rgba{line.rgb[0], line.rgb[1], line.rgb[2], 1.0F});
+  }
   if (content.frustum) add_frustum(*content.frustum, tiles, translucent);
   for (const SceneContent::Aircraft& aircraft : content.aircraft) {
     SceneTriangles& triangles = aircraft.ghost ? translucent : solid;
@@ -179,6 +185,10 @@ Result<Image> ScenePass::draw(const SceneContent& content,
   GroundLook look;
   look.output = GroundLook::Output::kHazyColour;
   look.format = PixelFormat::kRgb8;
+  if (content.projection) {
+    projection_.prepare(*content.projection, view);
+    look.projection = &projection_;
+  }
   const Status drawn = ground.draw(mesh, view.camera, textures, look);
   if (!drawn) return drawn.error();
   draw_triangles(solid, false);

@@ -33,6 +33,7 @@ class ScenePass {
   GlProgram sky_, overlay_;
   GlVertexArray no_vertices_, vertex_array_;
   GlBuffer vertices_;
+  ImageProjection projection_;
   std::optional<RenderTarget> target_;
 };
 

@@ -53,7 +53,7 @@ void add_frustum(const SceneContent::Frustum& frustum,
     const Eigen::Vector3d direction = (pose.rotation * frustum.camera.ray(pixels[i])).normalized();
     return view.camera_from_world(pose.translation + std::max(farthest_m, 100.0) * direction);
   };
-  for (std::size_t corner = 0; corner < 4; ++corner) {
+  for (std::size_t corner = 0; frustum.edges && corner < 4; ++corner) {
     const Eigen::Vector3d end = end_of(corner * kRaysPerSide);
     triangles.add_line(apex, end, 1.6, kFrustumColour);
     triangles.add_triangle(apex, end, end_of((corner + 1) % 4 * kRaysPerSide), kFaceColour);

@@ -15,17 +15,36 @@
 
 namespace overfly::server {
 
-enum class SceneMode { kChase, kOrbit, kTop };
+enum class SceneMode { kChase, kOrbit, kTop, kOnboard, kFree };
 
-/// The viewpoint of the scene. Angles give its direction as seen from the target.
+/// What a scene shows in addition to ground and sky.
+struct SceneShow {
+  bool ribbons = true;
+  bool aircraft = true;
+  bool frustum = true;         ///< edges of the main camera's view
+  bool footprint = true;       ///< outline of its image on the ground
+  bool points = true;          ///< map points of the estimators
+  bool image = false;          ///< the main camera's image on the ground
+  bool errors = false;         ///< lines from the truth to the estimates at the instant
+  bool error_history = false;  ///< likewise along the path
+  bool labels = false;         ///< tells where the aircraft are in the picture (Picture::labels)
+  bool operator==(const SceneShow&) const = default;
+};
+
+/// The viewpoint of the scene. In the modes chase, orbit and top angles give its direction as seen
+/// from the target, in the others the line of sight.
 struct SceneSettings {
   SceneMode mode = SceneMode::kChase;
-  double azimuth_rad = 0.0;    ///< chase: relative to the tail; orbit: clockwise from north
-  double elevation_rad = 0.4;  ///< above the horizon, in [-0.2, pi/2]
-  double distance_m = 120.0;   ///< in [5, 20000]
-  bool follow = true;          ///< orbit and top: target = aircraft, else the trajectory's centre
-  int width_px = 960;          ///< in [64, 1920]
-  int height_px = 720;         ///< in [64, 1440]
+  /// Chase: relative to the tail; onboard: relative to the nose; else clockwise from north.
+  double azimuth_rad = 0.0;
+  /// Above the horizon, onboard above the nose; in [-pi/2, pi/2].
+  double elevation_rad = 0.4;
+  double distance_m = 120.0;  ///< in [5, 20000]
+  bool follow = true;         ///< orbit and top: target = aircraft, else the trajectory's centre
+  Eigen::Vector3d eye_world_m = Eigen::Vector3d::Zero();  ///< free: the viewpoint
+  SceneShow show;
+  int width_px = 960;   ///< in [64, 1920]
+  int height_px = 720;  ///< in [64, 1440]
 };
 
 /// Tracks of a run in a scene.
@@ -68,6 +87,16 @@ struct ColourScale {
   bool operator==(const ColourScale&) const = default;
 };
 
+/// Where an aircraft is in a scene's picture.
+struct SceneLabel {
+  std::string run_id;
+  std::string estimator;  ///< empty = the truth
+  double x_px = 0.0;
+  double y_px = 0.0;
+  double distance_m = 0.0;        ///< from the viewpoint
+  std::optional<double> error_m;  ///< of an estimate: its distance from the truth
+};
+
 struct Picture {
   std::int64_t frame = 0;
   std::int64_t t_ns = 0;
@@ -77,6 +106,7 @@ struct Picture {
   int full_height_px = 0;
   bool grey = false;
   std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
+  std::vector<SceneLabel> labels;    ///< of a scene
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;
 };
 

@@ -12,7 +12,6 @@
 #include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/timeline/run_timeline.hpp"
-#include "server/views/view_scene.hpp"
 
 namespace overfly::server {
 namespace {
@@ -106,25 +105,49 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   auto view = renderers_.of_run(request.run_id);
   if (!view) return view.error();
   if (*view == nullptr) return std::optional<Picture>();
+  const SceneSettings& settings = request.scene;
   ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
-  const auto scene =
-      scene_view(request.scene, row.T_world_body, ribbons.centre(), *(*view)->world->tiles);
-  auto points = map_points(request, *timeline, ribbons, row);
-  auto content = scene_content(*timeline, ribbons, row, std::move(points), request.first_colour);
-  const Geodetic& origin = (*view)->world->tiles->frame().origin();
-  for (const SceneTracks& tracks : request.others) add_tracks(tracks, origin, &content);
+  const terrain::TileSource& tiles = *(*view)->world->tiles;
+  const auto scene = scene_view(settings, row.T_world_body, ribbons.centre(), tiles);
+  renderer::SceneContent content;
+  std::vector<PlacedLabel> places;
+  const bool onboard = settings.mode == SceneMode::kOnboard;
+  add_run({request.run_id, *timeline, ribbons, row, request.first_colour, Pose{}, onboard},
+          settings.show,
+          &content,
+          &places);
+  if (settings.show.points) content.points = map_points(request, *timeline, ribbons, row);
+  if (settings.show.frustum || settings.show.footprint) {
+    content.frustum = renderer::SceneContent::Frustum{timeline->main_camera().model.pinhole(),
+                                                      row.T_world_camera,
+                                                      settings.show.frustum && !onboard,
+                                                      settings.show.footprint};
+  }
+  const Geodetic origin = tiles.frame().origin();
+  for (const SceneTracks& tracks : request.others) {
+    add_tracks(tracks, origin, settings.show, &content, &places);
+  }
+  if (settings.show.image) {
+    // Without the image, if there is none: the camera's own picture tells why.
+    auto projection = frames_.projection({request.run_id, timeline.get(), kMainCamera, row});
+    if (projection) content.projection = std::move(*projection);
+  }
+  // Frames may have been made again meanwhile: that keeps the view.
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
   auto picture = encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
   if (!picture) return picture.error();
+  if (settings.show.labels) picture->labels = labels_in_view(places, scene, tiles);
   return std::optional(std::move(*picture));
 }
 
 void ViewPainter::add_tracks(const SceneTracks& tracks,
                              const Geodetic& origin,
-                             renderer::SceneContent* content) {
+                             const SceneShow& show,
+                             renderer::SceneContent* content,
+                             std::vector<PlacedLabel>* places) {
   const auto timeline = runs_.timeline(tracks.run_id);
   if (!timeline) return;
   const std::int64_t t_ns = tracks.live ? std::numeric_limits<std::int64_t>::max() : tracks.t_ns;
@@ -133,8 +156,16 @@ void ViewPainter::add_tracks(const SceneTracks& tracks,
   if (!row || !other_origin) return;
   ViewRibbons& ribbons = ribbons_of(*timeline, tracks.alignment);
   ribbons.refresh();
-  const Pose T_scene_other = T_world_other(origin, *other_origin);
-  add_other_run(**timeline, ribbons, *row, T_scene_other, tracks.first_colour, content);
+  add_run({tracks.run_id,
+           **timeline,
+           ribbons,
+           *row,
+           tracks.first_colour,
+           T_world_other(origin, *other_origin),
+           false},
+          show,
+          content,
+          places);
 }
 
 std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& request,

@@ -15,6 +15,7 @@
 #include "server/views/view_encoding.hpp"
 #include "server/views/view_renderers.hpp"
 #include "server/views/view_ribbons.hpp"
+#include "server/views/view_scene.hpp"
 
 namespace overfly::server {
 
@@ -47,7 +48,9 @@ class ViewPainter {
   /// @param origin  of the scene's world frame
   void add_tracks(const SceneTracks& tracks,
                   const Geodetic& origin,
-                  renderer::SceneContent* content);
+                  const SceneShow& show,
+                  renderer::SceneContent* content,
+                  std::vector<PlacedLabel>* places);
   /// Of the run's estimators at a frame, world frame.
   std::vector<Eigen::Vector3f> map_points(const PictureRequest& request,
                                           const RunTimeline& timeline,

@@ -116,6 +116,43 @@ std::vector<renderer::Ribbon> ViewRibbons::until(std::int64_t t_ns,
   return ribbons;
 }
 
+std::optional<Eigen::Vector3d> ViewRibbons::truth_at(std::int64_t t_ns) const {
+  const auto& stamps = truth_.t_ns;
+  const auto after = std::lower_bound(stamps.begin(), stamps.end(), t_ns);
+  if (after == stamps.end()) return std::nullopt;
+  const auto index = static_cast<std::size_t>(after - stamps.begin());
+  const Eigen::Vector3d& place = truth_.T_world_body[index].translation;
+  if (*after == t_ns) return place;
+  if (index == 0) return std::nullopt;
+  const auto span = static_cast<double>(*after - stamps[index - 1]);
+  const double share = static_cast<double>(t_ns - stamps[index - 1]) / span;
+  return (1.0 - share) * truth_.T_world_body[index - 1].translation + share * place;
+}
+
+std::vector<renderer::SceneContent::Line> ViewRibbons::errors_until(std::int64_t t_ns,
+                                                                    std::size_t first_colour,
+                                                                    std::size_t most) const {
+  constexpr double kWidthPx = 1.2;
+  std::vector<renderer::SceneContent::Line> lines;
+  if (truth_.t_ns.empty() || most == 0) return lines;
+  const std::int64_t span_ns = std::max<std::int64_t>(t_ns - truth_.t_ns.front(), 1);
+  const std::int64_t gap_ns = span_ns / static_cast<std::int64_t>(most) + 1;
+  for (std::size_t i = 0; i < estimates_.size(); ++i) {
+    const std::array<float, 3> rgb = estimator_rgb(first_colour + i);
+    std::int64_t next_ns = truth_.t_ns.front();
+    for (const Piece& piece : estimates_[i].pieces) {
+      for (std::size_t k = 0; k < piece.t_ns.size() && piece.t_ns[k] <= t_ns; ++k) {
+        if (piece.t_ns[k] < next_ns) continue;
+        const auto truth = truth_at(piece.t_ns[k]);
+        if (!truth) continue;
+        lines.push_back({*truth, piece.T_world_body[k].translation, rgb, kWidthPx});
+        next_ns = piece.t_ns[k] + gap_ns;
+      }
+    }
+  }
+  return lines;
+}
+
 Eigen::Vector3d ViewRibbons::centre() const {
   if (rows_seen_ == 0) return Eigen::Vector3d::Zero();
   return 0.5 * (box_min_ + box_max_);

@@ -33,6 +33,11 @@ class ViewRibbons {
   [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
                                                     const Pose& T_world_body_now,
                                                     std::size_t first_colour) const;
+  /// Lines from the truth to each estimate along the path up to t, at most `most` of each estimate
+  /// at equal intervals of time.
+  [[nodiscard]] std::vector<renderer::SceneContent::Line> errors_until(std::int64_t t_ns,
+                                                                       std::size_t first_colour,
+                                                                       std::size_t most) const;
   /// Centre of the box around the flown trajectory; zero before the first frame [m].
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
@@ -58,6 +63,8 @@ class ViewRibbons {
     std::optional<RowAlignment> alignment;
     std::vector<Piece> pieces;
   };
+  /// Position of the truth between the recorded poses; empty outside of them.
+  [[nodiscard]] std::optional<Eigen::Vector3d> truth_at(std::int64_t t_ns) const;
   void refresh_truth();
   void refresh_estimate(std::size_t estimator);
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/earth/geodesy.hpp"
+#include "renderer/ground/ground_ray.hpp"
 #include "renderer/viewpoint.hpp"
 
 namespace overfly::server {
@@ -24,6 +25,15 @@ Pose viewpoint(const SceneSettings& settings,
       return renderer::chase_viewpoint(T_world_body, view, ground);
     case SceneMode::kOrbit:
       return renderer::orbit_viewpoint(target, view, ground);
+    case SceneMode::kOnboard:
+      return renderer::onboard_viewpoint(
+          T_world_body, settings.azimuth_rad, settings.elevation_rad);
+    case SceneMode::kFree:
+      return renderer::free_viewpoint(settings.eye_world_m,
+                                      settings.azimuth_rad,
+                                      settings.elevation_rad,
+                                      view.min_above_m,
+                                      ground);
     case SceneMode::kTop:
       break;
   }
@@ -44,43 +54,90 @@ renderer::SceneView scene_view(const SceneSettings& settings,
   return view;
 }
 
-renderer::SceneContent scene_content(const RunTimeline& timeline,
-                                     const ViewRibbons& ribbons,
-                                     const FrameRow& row,
-                                     std::vector<Eigen::Vector3f> map_points_world,
-                                     std::size_t first_colour) {
-  renderer::SceneContent content;
-  add_other_run(timeline, ribbons, row, Pose{}, first_colour, &content);
-  content.points = std::move(map_points_world);
-  const PinholeCamera camera = timeline.main_camera().model.pinhole();
-  content.frustum = renderer::SceneContent::Frustum{camera, row.T_world_camera, true};
-  return content;
+void add_run(const SceneRun& run,
+             const SceneShow& show,
+             renderer::SceneContent* content,
+             std::vector<PlacedLabel>* places) {
+  const Eigen::Vector3d p_truth = run.T_scene_world * run.row.T_world_body.translation;
+  // From its aircraft, what coincides with it would fill the view.
+  const auto hides_view = [&](const Pose& T_scene_body) {
+    constexpr double kNearM = 15.0;
+    return run.seen_from && (T_scene_body.translation - p_truth).norm() < kNearM;
+  };
+  if (show.aircraft && !run.seen_from) {
+    renderer::SceneContent::Aircraft truth;
+    truth.T_world_body = run.T_scene_world * run.row.T_world_body;
+    truth.rgb = kTruthRgb;
+    content->aircraft.push_back(truth);
+  }
+  if (!run.seen_from) places->push_back({{run.run_id, "", 0.0, 0.0, 0.0, {}}, p_truth});
+  const auto& names = run.timeline.estimators();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto estimate = run.timeline.estimate_at(i, run.row.t_ns);
+    const auto T_world_body =
+        estimate ? run.ribbons.T_world_body(i, *estimate) : std::optional<Pose>();
+    if (!T_world_body) continue;
+    const Pose T_scene_body = run.T_scene_world * *T_world_body;
+    const std::array<float, 3> rgb = estimator_rgb(run.first_colour + i);
+    if (show.aircraft && !hides_view(T_scene_body)) {
+      renderer::SceneContent::Aircraft ghost;
+      ghost.T_world_body = T_scene_body;
+      ghost.rgb = rgb;
+      ghost.ghost = true;
+      content->aircraft.push_back(ghost);
+    }
+    if (show.errors) content->lines.push_back({p_truth, T_scene_body.translation, rgb, 2.5});
+    const double error_m = (T_scene_body.translation - p_truth).norm();
+    places->push_back({{run.run_id, names[i], 0.0, 0.0, 0.0, error_m}, T_scene_body.translation});
+  }
+  if (show.ribbons) {
+    for (renderer::Ribbon& ribbon :
+         run.ribbons.until(run.row.t_ns, run.row.T_world_body, run.first_colour)) {
+      std::vector<Pose>& poses = ribbon.T_world_body;
+      for (Pose& pose : poses) pose = run.T_scene_world * pose;
+      while (!poses.empty() && hides_view(poses.back())) poses.pop_back();
+      if (poses.size() > 1) content->ribbons.push_back(std::move(ribbon));
+    }
+  }
+  if (show.error_history) {
+    constexpr std::size_t kMostLines = 400;
+    for (auto line : run.ribbons.errors_until(run.row.t_ns, run.first_colour, kMostLines)) {
+      line.from_world = run.T_scene_world * line.from_world;
+      line.to_world = run.T_scene_world * line.to_world;
+      content->lines.push_back(line);
+    }
+  }
 }
 
-void add_other_run(const RunTimeline& timeline,
-                   const ViewRibbons& ribbons,
-                   const FrameRow& row,
-                   const Pose& T_world_other,
-                   std::size_t first_colour,
-                   renderer::SceneContent* content) {
-  renderer::SceneContent::Aircraft truth;
-  truth.T_world_body = T_world_other * row.T_world_body;
-  truth.rgb = kTruthRgb;
-  content->aircraft.push_back(truth);
-  for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
-    const auto estimate = timeline.estimate_at(i, row.t_ns);
-    const auto T_other_body = estimate ? ribbons.T_world_body(i, *estimate) : std::nullopt;
-    if (!T_other_body) continue;
-    renderer::SceneContent::Aircraft ghost;
-    ghost.T_world_body = T_world_other * *T_other_body;
-    ghost.rgb = estimator_rgb(first_colour + i);
-    ghost.ghost = true;
-    content->aircraft.push_back(ghost);
+std::vector<SceneLabel> labels_in_view(const std::vector<PlacedLabel>& places,
+                                       const renderer::SceneView& view,
+                                       const HeightQuery& ground) {
+  constexpr double kClearM = 1.0;
+  const auto camera =
+      PinholeCamera::from_fov(view.width_px, view.height_px, view.fov_y_rad, FovAxis::kVertical);
+  if (!camera) return {};
+  const Pose T_camera_world = view.T_world_camera.inverse();
+  std::vector<SceneLabel> labels;
+  for (const PlacedLabel& place : places) {
+    const auto pixel = camera->project(T_camera_world * place.p_world);
+    if (!pixel || pixel->x() < 0.0 || pixel->x() > view.width_px - 1.0 || pixel->y() < 0.0 ||
+        pixel->y() > view.height_px - 1.0) {
+      continue;
+    }
+    const Eigen::Vector3d sight = place.p_world - view.T_world_camera.translation;
+    const double distance_m = sight.norm();
+    if (distance_m > kClearM &&
+        renderer::cast_to_ground(
+            ground, view.T_world_camera.translation, sight / distance_m, distance_m - kClearM)) {
+      continue;
+    }
+    SceneLabel label = place.label;
+    label.x_px = pixel->x();
+    label.y_px = pixel->y();
+    label.distance_m = distance_m;
+    labels.push_back(std::move(label));
   }
-  for (renderer::Ribbon& ribbon : ribbons.until(row.t_ns, row.T_world_body, first_colour)) {
-    for (Pose& pose : ribbon.T_world_body) pose = T_world_other * pose;
-    content->ribbons.push_back(std::move(ribbon));
-  }
+  return labels;
 }
 
 Pose T_world_other(const Geodetic& origin, const Geodetic& other_origin) {

@@ -1,6 +1,10 @@
 // The scene view of a run at an instant: its viewpoint and its contents.
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
 #include "core/earth/geodesy.hpp"
 #include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
@@ -9,6 +13,12 @@
 #include "server/views/view_ribbons.hpp"
 
 namespace overfly::server {
+
+/// A label at a place of the scene.
+struct PlacedLabel {
+  SceneLabel label;
+  Eigen::Vector3d p_world;
+};
 
 /// The viewpoint.
 /// @param T_world_body  of the aircraft
@@ -19,23 +29,28 @@ namespace overfly::server {
                                              const Eigen::Vector3d& centre_world,
                                              const HeightQuery& ground);
 
-/// Aircraft, frustum, ribbons and estimates at the frame `row`.
-/// @param map_points_world  shown with them
-/// @param first_colour  index of the first estimator's colour
-[[nodiscard]] renderer::SceneContent scene_content(const RunTimeline& timeline,
-                                                   const ViewRibbons& ribbons,
-                                                   const FrameRow& row,
-                                                   std::vector<Eigen::Vector3f> map_points_world,
-                                                   std::size_t first_colour);
+/// A run in a scene.
+struct SceneRun {
+  std::string run_id;
+  const RunTimeline& timeline;
+  const ViewRibbons& ribbons;
+  FrameRow row;                  ///< at the instant
+  std::size_t first_colour = 0;  ///< index of the first estimator's colour
+  Pose T_scene_world;            ///< its world frame in that of the scene
+  bool seen_from = false;        ///< the viewpoint is in its aircraft, which is therefore not shown
+};
 
-/// Adds aircraft, ribbons and estimates of another run at its frame `row`.
-/// @param T_world_other  its world frame in that of the scene
-void add_other_run(const RunTimeline& timeline,
-                   const ViewRibbons& ribbons,
-                   const FrameRow& row,
-                   const Pose& T_world_other,
-                   std::size_t first_colour,
-                   renderer::SceneContent* content);
+/// Adds aircraft, ribbons, estimates and error lines.
+/// @param places  gets where the labels of the aircraft belong; without pixels
+void add_run(const SceneRun& run,
+             const SceneShow& show,
+             renderer::SceneContent* content,
+             std::vector<PlacedLabel>* places);
+
+/// The labels that lie in the view and are not hidden by the ground.
+[[nodiscard]] std::vector<SceneLabel> labels_in_view(const std::vector<PlacedLabel>& places,
+                                                     const renderer::SceneView& view,
+                                                     const HeightQuery& ground);
 
 /// The world frame of one run in that of another.
 [[nodiscard]] Pose T_world_other(const Geodetic& origin, const Geodetic& other_origin);

@@ -65,7 +65,18 @@ try {
   await open(`layout=estimator&run=${fast}&${instant}`, 'light');
   await save('dashboard_estimator');
   await open(`layout=camera&run=${fast}&${instant}`);
+  const camera = await page.locator('[data-panel=camera] .picture-view canvas').boundingBox();
+  await page.mouse.move(camera.x + camera.width * 0.62, camera.y + camera.height * 0.4);
+  await page.locator('.picture-readout span').filter({ hasText: 'range' }).first().waitFor();
   await save('dashboard_camera');
+  await open(`layout=camera&run=${slow}&run=${fast}&${instant}`);
+  await page.locator('#image-error-of').selectOption('feature');
+  await page.waitForTimeout(2000);
+  await save('dashboard_pictures');
+  const shown = 'show=aircraft,ribbons,labels,errors,frustum,footprint,image';
+  await open(`layout=fly&run=${slow}&run=${fast}&view=orbit,250.0,42.0,620&${shown}&${instant}`);
+  await page.locator('[data-role=scene-show]').click();
+  await save('dashboard_scene');
   await open(`layout=fly&run=${fast}&${instant}`, 'light');
   await page.locator('[data-role=open-scores]').click();
   await page.locator(`[data-trajectory="run:${fast}/truth"] input[type=radio]`).check();

@@ -73,5 +73,39 @@ TEST(Viewpoint, TopLooksStraightDownWithItsDirectionAtTheTop) {
   }
 }
 
+TEST(Viewpoint, OnboardLooksAlongTheNoseAndTiltsWithTheAircraft) {
+  const Pose body{R_world_body_from({0.5, 0.1, 1.2}), {5.0, 6.0, 300.0}};
+  const Pose ahead = onboard_viewpoint(body, 0.0, 0.0);
+  EXPECT_NEAR((line_of_sight(ahead) - body.rotation * Eigen::Vector3d::UnitX()).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((image_top(ahead) + body.rotation * Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((ahead.translation - body.translation).norm(), 1.0, 1e-9);
+  const Pose right = onboard_viewpoint(body, 0.5 * kPi, 0.0);
+  EXPECT_NEAR((line_of_sight(right) - body.rotation * Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-9);
+  const Pose up = onboard_viewpoint(body, 0.0, 0.5 * kPi);
+  EXPECT_NEAR((line_of_sight(up) + body.rotation * Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-9);
+}
+
+TEST(Viewpoint, FreeLooksWhereItsAnglesSay) {
+  const Eigen::Vector3d eye(3.0, 4.0, 50.0);
+  for (const double azimuth_rad : {0.0, 1.0, -2.5}) {
+    for (const double elevation_rad : {-1.2, 0.0, 0.9}) {
+      const Pose pose = free_viewpoint(eye, azimuth_rad, elevation_rad, 2.0, kPlain);
+      const Eigen::Vector3d ahead(std::cos(elevation_rad) * std::sin(azimuth_rad),
+                                  std::cos(elevation_rad) * std::cos(azimuth_rad),
+                                  std::sin(elevation_rad));
+      EXPECT_NEAR((line_of_sight(pose) - ahead).norm(), 0.0, 1e-9);
+      EXPECT_EQ(pose.translation, eye);
+      EXPECT_GT(image_top(pose).z(), 0.0) << "upright";
+    }
+  }
+  EXPECT_DOUBLE_EQ(free_viewpoint({0, 0, -9}, 0.0, 0.0, 2.0, kPlain).translation.z(), 2.0);
+  // Straight down the image's top lies ahead, without a jump.
+  for (const double elevation_rad : {-0.5 * kPi, 0.5 * kPi}) {
+    const Pose at = free_viewpoint(eye, 0.7, elevation_rad, 2.0, kPlain);
+    const Pose near = free_viewpoint(eye, 0.7, 0.99 * elevation_rad, 2.0, kPlain);
+    EXPECT_NEAR(rotation_angle_rad(at.rotation, near.rotation), 0.005 * kPi, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace overfly::renderer

@@ -7,6 +7,7 @@ import './styles/layout.css';
 import './styles/dock.css';
 import './styles/panels.css';
 import './styles/pictures.css';
+import './styles/scene.css';
 import './styles/errors.css';
 import './styles/plots.css';
 import './styles/side.css';
@@ -32,7 +33,8 @@ import { LogWorlds } from './store/logs/log_worlds';
 import { Notices } from './store/notices';
 import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
-import { SceneControl } from './store/scene_control';
+import { lookFrom, showText, viewText } from './store/scene/scene_look';
+import { SceneControl } from './store/scene/scene_control';
 import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
@@ -83,7 +85,16 @@ const connect = new VehicleConnect(store, rest, session, newKey);
 const scores = new ScoreDesk(store, rest, uploadByBrowser);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
-const layouts = new Layouts(store, notices, storage);
+const layouts = new Layouts(store, notices, storage, {
+  look: () => {
+    const { scene: shown, sideBySide } = store.state;
+    return { view: viewText(shown), show: showText(shown), sideBySide };
+  },
+  apply: ({ view, show, sideBySide }) => {
+    scene.apply(lookFrom(view, show));
+    session.setSideBySide(sideBySide);
+  },
+});
 const themes = new Themes(store, storage, applyTheme);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
@@ -107,7 +118,8 @@ const context = {
   layouts,
   themes,
 };
-scene.setMode(store.state.sceneMode);
+scene.apply(store.state.scene);
+layouts.applyLook();
 showScreen(context, document.body);
 followAddress(context);
 window

@@ -168,13 +168,63 @@ ClientCommand read_subscribe(JsonFields* fields) {
 }
 
 std::optional<server::SceneMode> read_mode(JsonFields* fields) {
+  using server::SceneMode;
+  static const std::map<std::string, SceneMode> kModes = {{"chase", SceneMode::kChase},
+                                                          {"orbit", SceneMode::kOrbit},
+                                                          {"top", SceneMode::kTop},
+                                                          {"onboard", SceneMode::kOnboard},
+                                                          {"free", SceneMode::kFree}};
   const auto mode = fields->text("mode");
   if (!mode) return std::nullopt;
-  if (*mode == "chase") return server::SceneMode::kChase;
-  if (*mode == "orbit") return server::SceneMode::kOrbit;
-  if (*mode == "top") return server::SceneMode::kTop;
-  fields->reject("mode", " = \"" + *mode + "\": must be \"chase\", \"orbit\" or \"top\"");
+  const auto known = kModes.find(*mode);
+  if (known != kModes.end()) return known->second;
+  fields->reject(
+      "mode",
+      " = \"" + *mode + "\": must be \"chase\", \"orbit\", \"top\", \"onboard\" or \"free\"");
   return std::nullopt;
+}
+
+/// What a scene shows: a list of names; the others are off.
+std::optional<server::SceneShow> read_show(JsonFields* fields) {
+  using Show = server::SceneShow;
+  static const std::map<std::string, bool Show::*> kParts = {
+      {"ribbons", &Show::ribbons},
+      {"aircraft", &Show::aircraft},
+      {"frustum", &Show::frustum},
+      {"footprint", &Show::footprint},
+      {"points", &Show::points},
+      {"image", &Show::image},
+      {"errors", &Show::errors},
+      {"error_history", &Show::error_history},
+      {"labels", &Show::labels}};
+  const json* list = fields->array("show");
+  if (list == nullptr) return std::nullopt;
+  Show show;
+  for (const auto& [name, part] : kParts) show.*part = false;
+  for (const json& entry : *list) {
+    const auto part = entry.is_string() ? kParts.find(entry.get<std::string>()) : kParts.end();
+    if (part == kParts.end()) {
+      fields->reject("show", ": " + to_text(entry) + " is no part of a scene");
+      return std::nullopt;
+    }
+    show.*(part->second) = true;
+  }
+  return show;
+}
+
+/// The viewpoint of the mode "free".
+std::optional<Eigen::Vector3d> read_eye(JsonFields* fields) {
+  // Beyond it neither the tangent frame nor a map projection describes the ground.
+  constexpr double kMostM = 1e6;
+  const auto x_m = fields->number("x_m", -kMostM, kMostM);
+  const auto y_m = fields->number("y_m", -kMostM, kMostM);
+  const auto z_m = fields->number("z_m", -kMostM, kMostM);
+  if (!x_m && !y_m && !z_m) return std::nullopt;
+  if (!x_m || !y_m || !z_m) {
+    fields->reject("x_m", ": a viewpoint needs x_m, y_m and z_m");
+    return std::nullopt;
+  }
+  return Eigen::Vector3d(*x_m, *y_m, *z_m);
 }
 
 std::optional<double> read_angle_rad(JsonFields* fields, const char* name, double min, double max) {
@@ -192,11 +242,13 @@ ClientCommand read_view(JsonFields* fields) {
   command.view = read_name(fields, "view");
   command.mode = read_mode(fields);
   command.azimuth_rad = read_angle_rad(fields, "azimuth_deg", -36000, 36000);
-  command.elevation_rad = read_angle_rad(fields, "elevation_deg", -11, 90);
+  command.elevation_rad = read_angle_rad(fields, "elevation_deg", -90, 90);
   command.distance_m = fields->number("distance_m", 5, 20000);
   command.follow = fields->boolean("follow");
   command.width_px = read_size_px(fields, "width_px", 1920);
   command.height_px = read_size_px(fields, "height_px", 1440);
+  command.eye_world_m = read_eye(fields);
+  command.show = read_show(fields);
   return command;
 }
 

@@ -2,6 +2,7 @@
 // server").
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -63,6 +64,8 @@ struct ViewCommand {
   std::optional<bool> follow;
   std::optional<int> width_px;
   std::optional<int> height_px;
+  std::optional<Eigen::Vector3d> eye_world_m;
+  std::optional<server::SceneShow> show;
 };
 struct PlayCommand {};
 struct PauseCommand {};

@@ -29,6 +29,25 @@ std::string estimator_of(const std::string& name) {
   return slash == std::string::npos ? std::string() : name.substr(slash + 1);
 }
 
+/// Where the aircraft are in the picture that follows.
+nlohmann::json labels_json(const PictureHeader& header,
+                           const std::vector<server::SceneLabel>& labels) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const server::SceneLabel& label : labels) {
+    nlohmann::json entry = {{"run", label.run_id},
+                            {"x_px", label.x_px},
+                            {"y_px", label.y_px},
+                            {"distance_m", label.distance_m}};
+    if (!label.estimator.empty()) entry["estimator"] = label.estimator;
+    if (label.error_m) entry["error_m"] = *label.error_m;
+    list.push_back(std::move(entry));
+  }
+  return {{"type", "labels"},
+          {"id", header.stream_id},
+          {"sequence", header.sequence},
+          {"labels", std::move(list)}};
+}
+
 }  // namespace
 
 PictureStreams::StreamKey PictureStreams::key_of(const StreamRequest& request) {
@@ -80,6 +99,8 @@ Status PictureStreams::set_view(const ViewCommand& command) {
   settings.follow = command.follow.value_or(settings.follow);
   settings.width_px = command.width_px.value_or(settings.width_px);
   settings.height_px = command.height_px.value_or(settings.height_px);
+  settings.eye_world_m = command.eye_world_m.value_or(settings.eye_world_m);
+  settings.show = command.show.value_or(settings.show);
   ++view.change;
   return {};
 }
@@ -219,6 +240,7 @@ void PictureStreams::ready(const PictureTicket& ticket,
   }
   header.full_width_px = static_cast<std::uint16_t>(picture->full_width_px);
   header.full_height_px = static_cast<std::uint16_t>(picture->full_height_px);
+  if (!picture->labels.empty()) port->send_text(to_text(labels_json(header, picture->labels)));
   port->send_picture(ticket, header, picture->bytes);
 }
 

@@ -9,6 +9,7 @@
 #include "server/files/jpeg.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/views/images/colour_map.hpp"
+#include "server/views/view_encoding.hpp"
 
 namespace overfly::server {
 namespace {
@@ -131,6 +132,43 @@ FrameImages::Made<ScaledImage> FrameImages::depth(const ViewedFrame& frame, int 
   const ScaledImage made{std::make_shared<const Image>(coloured_depth(*depth, scale)), scale};
   keep(key, made);
   return std::optional(made);
+}
+
+FrameImages::Made<renderer::SceneContent::Projection> FrameImages::projection(
+    const ViewedFrame& frame) {
+  constexpr int kMostWidthPx = 2048;
+  constexpr int kMostDepthPx = 320;
+  const std::string key = key_of("projection", frame);
+  if (key == projected_key_) return std::optional(projected_);
+  const Made<SharedImage> image = received(frame);
+  if (!image) return image.error();
+  const auto again = renderers_.frames_of(frame.run_id);
+  if (!again) return again.error();
+  if (!*image || !*again) return std::optional<renderer::SceneContent::Projection>();
+  auto request = drawn_request(frame, (*again)->maker);
+  if (!request) return request.error();
+  renderer::SceneContent::Projection made;
+  made.camera = request->camera;
+  made.image = halved_to_fit(**image, kMostWidthPx);
+  while (made.camera.pinhole().width_px > made.image->width_px) {
+    made.camera = half_sized(made.camera);
+  }
+  if (made.camera.pinhole().width_px != made.image->width_px ||
+      made.camera.pinhole().height_px != made.image->height_px) {
+    return Error{ErrorCode::kConflict, "the camera's image does not have the size of its model"};
+  }
+  const int rows = request->camera.pinhole().height_px;
+  made.T_world_camera_first = request->T_world_camera.at(request->row_time_ns(0.0));
+  made.T_world_camera_last = request->T_world_camera.at(request->row_time_ns(rows - 1.0));
+  while (request->camera.pinhole().width_px > kMostDepthPx) {
+    request->camera = half_sized(request->camera);
+  }
+  auto depth = (*again)->renderer.render_depth(*request);
+  if (!depth) return depth.error();
+  made.depth = std::make_shared<const DepthImage>(std::move(*depth));
+  projected_key_ = key;
+  projected_ = made;
+  return std::optional(std::move(made));
 }
 
 FrameImages::Made<FrameImages::SharedImage> FrameImages::ideal(const ViewedFrame& frame,

@@ -56,6 +56,8 @@ class FrameImages {
   void remember(const ViewedFrame& frame, const StampedImage& live);
   /// The coloured depth of the ground along the optical axis, at most `max_width_px` wide.
   [[nodiscard]] Made<ScaledImage> depth(const ViewedFrame& frame, int max_width_px);
+  /// The received image as it lies on the ground, reduced if it is large.
+  [[nodiscard]] Made<renderer::SceneContent::Projection> projection(const ViewedFrame& frame);
   /// The difference of two images, coloured. Errors: in addition kNotFound if the estimated pose is
   /// below the ground or not on the earth; kConflict if the images have different sizes.
   [[nodiscard]] Made<ScaledImage> difference(const ViewedFrame& frame,
@@ -86,6 +88,9 @@ class FrameImages {
   ViewRenderers& renderers_;
   std::list<Kept> kept_;  ///< most recently used first
   std::size_t kept_bytes_ = 0;
+  /// Of the frame that lay on the ground last.
+  std::string projected_key_;
+  renderer::SceneContent::Projection projected_;
 };
 
 /// How the frame was drawn. Where that is not known (the truth of a live run's newest frames may

@@ -44,6 +44,11 @@ class FramePainter {
   [[nodiscard]] Painted debug(const PictureRequest& request,
                               const RunTimeline& timeline,
                               const FrameRow& row);
+  /// The camera's image for a scene; empty while the world is being opened. Errors: as camera.
+  [[nodiscard]] Result<std::optional<renderer::SceneContent::Projection>> projection(
+      const ViewedFrame& frame) {
+    return images_.projection(frame);
+  }
   /// Errors: kInvalidArgument for a pixel outside the image; as camera.
   [[nodiscard]] Probed probe(const PixelRequest& request);
 

@@ -207,6 +207,19 @@ export class Dashboard {
     }, panel);
   }
 
+  /** Waits until a panel's picture has stayed the same for as long as one takes to be drawn. */
+  async untilStill(panel) {
+    const end_ms = Date.now() + kPatience_ms;
+    let before = null;
+    for (let same = 0; same < 4; ) {
+      if (Date.now() > end_ms) throw new Error(`the picture of ${panel} never stays the same`);
+      const { digest } = await this.picture(panel);
+      same = digest === before ? same + 1 : 0;
+      before = digest;
+      await this.page.waitForTimeout(150);
+    }
+  }
+
   async untilPictureDiffers(panel, digest) {
     const end_ms = Date.now() + kPatience_ms;
     while ((await this.picture(panel)).digest === digest) {

@@ -52,6 +52,28 @@ TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
   EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", 5}, {"s", 0}}));
 }
 
+TEST(ClientMessage, ReadsTheContentsAndThePlaceOfAView) {
+  const auto view = parse_as<ViewCommand>(
+      R"({"type":"view","mode":"free","elevation_deg":-90,"x_m":1,"y_m":-2,"z_m":300,
+          "show":["image","labels"]})");
+  EXPECT_EQ(view.mode, server::SceneMode::kFree);
+  EXPECT_EQ(view.eye_world_m, Eigen::Vector3d(1, -2, 300));
+  ASSERT_TRUE(view.show);
+  server::SceneShow expected{false, false, false, false, false, true, false, false, true};
+  EXPECT_EQ(*view.show, expected);
+  EXPECT_FALSE(parse_as<ViewCommand>(R"({"type":"view","mode":"onboard"})").show);
+  for (const char* wrong : {R"("show":["trees"])",
+                            R"("show":[7])",
+                            R"("show":"image")",
+                            R"("x_m":1,"y_m":2)",
+                            R"("x_m":1e7,"y_m":2,"z_m":3)",
+                            R"("mode":"underwater")",
+                            R"("elevation_deg":-91)"}) {
+    EXPECT_FALSE(parse_client_message(R"({"type":"view",)" + std::string(wrong) + "}").status.ok())
+        << wrong;
+  }
+}
+
 TEST(ClientMessage, ReadsDepthAndErrorStreams) {
   const auto subscribe = parse_as<SubscribeCommand>(
       R"({"type":"subscribe","pictures":[{"run":"r","name":"depth","camera":"left"},

@@ -53,6 +53,19 @@ class ViewSceneContentTest : public testing::ManagerTest {
     return content;
   }
 
+  static std::vector<SceneLabel> labels_of(RunManager& runs, const PictureRequest& request) {
+    std::promise<Result<Picture>> answer;
+    ViewService views(runs);
+    views.request(1, 1, request, [&](Result<Picture> picture) { answer.set_value(picture); });
+    return answer.get_future().get().value().labels;
+  }
+
+  static std::vector<Override> drifting() {
+    return {
+        {"estimators",
+         nlohmann::json::parse(R"([{"name":"d","type":"drifting","parameters":{"drift":0.2}}])")}};
+  }
+
   static PictureRequest scene_of(const std::string& id, std::int64_t frame) {
     PictureRequest request;
     request.run_id = id;
@@ -118,6 +131,63 @@ TEST_F(ViewSceneContentTest, HasTheMapPointsRecordedLast) {
   // A damaged file costs the points, not the picture.
   ASSERT_TRUE(write_whole(map_points_file(folder, "p", 9), std::string("damaged")).ok());
   EXPECT_TRUE(points_at_frame(*runs, id, 12).empty());
+}
+
+TEST_F(ViewSceneContentTest, HasOnlyThePartsThatAreShown) {
+  const auto runs = watched_runs();
+  const std::string id = runs->start("small", drifting()).value().id;
+  wait_for_end(*runs, id);
+  PictureRequest request = scene_of(id, 15);
+  const renderer::SceneContent usual = drawn(*runs, request);
+  EXPECT_EQ(usual.aircraft.size(), 2U);
+  EXPECT_TRUE(usual.frustum && usual.frustum->edges && usual.frustum->footprint);
+  EXPECT_TRUE(usual.lines.empty());
+  EXPECT_FALSE(usual.projection);
+  request.scene.show = {false, false, false, true, false, true, true, false, false};
+  const renderer::SceneContent some = drawn(*runs, request);
+  EXPECT_TRUE(some.aircraft.empty() && some.ribbons.empty() && some.points.empty());
+  EXPECT_TRUE(some.frustum && !some.frustum->edges && some.frustum->footprint);
+  ASSERT_EQ(some.lines.size(), 1U);
+  EXPECT_LT((some.lines[0].from_world - usual.aircraft[0].T_world_body.translation).norm(), 1e-9);
+  EXPECT_LT((some.lines[0].to_world - usual.aircraft[1].T_world_body.translation).norm(), 1e-9);
+  ASSERT_TRUE(some.projection);
+  EXPECT_EQ(some.projection->image->width_px, 160);
+  EXPECT_EQ(some.projection->camera.pinhole().width_px, 160);
+  const Pose T_world_camera = runs->timeline(id).value()->frame_at(request.t_ns)->T_world_camera;
+  EXPECT_LT((some.projection->T_world_camera_first.translation - T_world_camera.translation).norm(),
+            1e-6);
+  request.scene.show = {false, false, false, false, false, false, false, true, false};
+  const renderer::SceneContent history = drawn(*runs, request);
+  EXPECT_FALSE(history.frustum);
+  // Poses of ribbons are every third one, of which the first is at the start.
+  EXPECT_EQ(history.lines.size(), 6U);
+  for (const auto& line : history.lines) {
+    EXPECT_LT((line.to_world - line.from_world).norm(), 20.0);
+  }
+  EXPECT_GT((history.lines.back().to_world - history.lines.back().from_world).norm(), 0.5);
+}
+
+TEST_F(ViewSceneContentTest, TellsWhereTheAircraftAre) {
+  const auto runs = watched_runs();
+  const std::string id = runs->start("small", drifting()).value().id;
+  wait_for_end(*runs, id);
+  PictureRequest request = scene_of(id, 15);
+  request.scene.mode = SceneMode::kTop;
+  request.scene.distance_m = 300.0;
+  EXPECT_TRUE(labels_of(*runs, request).empty()) << "unless they are asked for";
+  request.scene.show.labels = true;
+  const std::vector<SceneLabel> labels = labels_of(*runs, request);
+  ASSERT_EQ(labels.size(), 2U);
+  EXPECT_EQ(labels[0].run_id, id);
+  EXPECT_EQ(labels[0].estimator, "");
+  EXPECT_NEAR(labels[0].x_px, 479.5, 1e-6) << "the aircraft is in the middle";
+  EXPECT_NEAR(labels[0].y_px, 359.5, 1e-6);
+  EXPECT_EQ(labels[1].estimator, "d");
+  EXPECT_GT(labels[1].error_m, 0.5);
+  request.scene.mode = SceneMode::kOnboard;
+  for (const SceneLabel& label : labels_of(*runs, request)) {
+    EXPECT_FALSE(label.estimator.empty()) << "not of the aircraft that one is in";
+  }
 }
 
 }  // namespace

@@ -64,8 +64,9 @@ export interface StreamClientOptions {
 const kCloseTooSlow = 4000;
 
 /** The name under which a stream's pictures arrive. */
-export function picturesOf(stream: string, camera?: string): string {
-  return camera === undefined ? stream : `${stream}?camera=${camera}`;
+export function picturesOf(stream: string, camera?: string, view?: string): string {
+  const camera_part = camera === undefined ? '' : `?camera=${camera}`;
+  return stream + camera_part + (view === undefined ? '' : `?view=${view}`);
 }
 
 export class StreamClient {
@@ -83,6 +84,8 @@ export class StreamClient {
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
   private streams = new Map<number, { run: string; name: string }>();
+  /** Labels of the picture that comes next, by stream. */
+  private readonly labels = new Map<number, ServerMessage & { type: 'labels' }>();
 
   constructor(private readonly options: StreamClientOptions) {}
 
@@ -182,9 +185,14 @@ export class StreamClient {
     } else if (message.type === 'pictures') {
       const own = message.pictures.filter(({ run }) => this.runs.has(run));
       this.streams = new Map(
-        own.map(({ id, run, name, camera }) => [id, { run, name: picturesOf(name, camera) }]),
+        own.map(({ id, run, name, camera, view }) => [
+          id,
+          { run, name: picturesOf(name, camera, view) },
+        ]),
       );
       this.options.listener.onMessage({ ...message, pictures: own });
+    } else if (message.type === 'labels') {
+      this.labels.set(message.id, message);
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else if (this.concerns(message)) {
@@ -193,7 +201,9 @@ export class StreamClient {
   }
 
   /** Whether a message is about a watched run; the others are of one that was left. */
-  private concerns(message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' }>): boolean {
+  private concerns(
+    message: Exclude<ServerMessage, { type: 'hello' | 'ok' | 'error' | 'labels' }>,
+  ): boolean {
     if (message.type === 'pictures') return false;
     if (message.type === 'playback')
       return Object.keys(message.runs).some((run) => this.runs.has(run));
@@ -234,6 +244,8 @@ export class StreamClient {
     const picture = parsePicture(buffer);
     const stream = picture === null ? undefined : this.streams.get(picture.streamId);
     if (picture === null || stream === undefined || !this.runs.has(stream.run)) return;
+    const labels = this.labels.get(picture.streamId);
+    if (labels?.sequence === picture.sequence) picture.labels = labels.labels;
     this.options.listener.onPicture(stream.run, stream.name, picture);
   }
 
@@ -255,6 +267,7 @@ export class StreamClient {
     this.greeted = false;
     this.opening.clear();
     this.streams.clear();
+    this.labels.clear();
     if (socket !== null) {
       socket.onclose = null;
       socket.close();

@@ -3,7 +3,18 @@ import type { EstimatorStatus, Metrics, Run } from './rest_types';
 
 export const kProtocolVersion = 2;
 
-export type SceneMode = 'chase' | 'orbit' | 'top';
+export type SceneMode = 'chase' | 'orbit' | 'top' | 'onboard' | 'free';
+
+export type ScenePart =
+  | 'ribbons'
+  | 'aircraft'
+  | 'frustum'
+  | 'footprint'
+  | 'points'
+  | 'image'
+  | 'errors'
+  | 'error_history'
+  | 'labels';
 
 export interface SceneView {
   mode: SceneMode;
@@ -11,8 +22,26 @@ export interface SceneView {
   elevation_deg: number;
   distance_m: number;
   follow: boolean;
+  /** Viewpoint of the mode `free`. */
+  x_m: number;
+  y_m: number;
+  z_m: number;
+  /** What it shows; all else is off. */
+  show: ScenePart[];
   width_px: number;
   height_px: number;
+}
+
+/** Where an aircraft is in the picture of a scene. */
+export interface SceneLabel {
+  run: string;
+  /** Absent: the truth. */
+  estimator?: string;
+  x_px: number;
+  y_px: number;
+  distance_m: number;
+  /** Of an estimate: its distance from the truth. */
+  error_m?: number;
 }
 
 export interface PictureStream {
@@ -143,6 +172,7 @@ export type ServerMessage =
   | { type: 'run'; run: Run }
   | { type: 'series'; run: string; series: SeriesInfo[] }
   | { type: 'pictures'; pictures: PictureInfo[] }
+  | { type: 'labels'; id: number; sequence: number; labels: SceneLabel[] }
   | ({ type: 'rows' } & Rows)
   | { type: 'estimators'; run: string; estimators: Record<string, EstimatorStatus> }
   | { type: 'metrics'; run: string; metrics: Metrics }

@@ -1,5 +1,5 @@
 // Pure parsers of received messages. They throw only ParseError.
-import type { ServerMessage } from './messages';
+import type { SceneLabel, ServerMessage } from './messages';
 
 export class ParseError extends Error {}
 
@@ -10,6 +10,7 @@ const kRequired: Record<ServerMessage['type'], Record<string, string>> = {
   run: { run: 'object' },
   series: { run: 'string', series: 'object' },
   pictures: { pictures: 'object' },
+  labels: { id: 'number', sequence: 'number', labels: 'object' },
   rows: { run: 'string', stream: 'string', seq: 'number', columns: 'object' },
   estimators: { run: 'string', estimators: 'object' },
   metrics: { run: 'string', metrics: 'object' },
@@ -54,6 +55,8 @@ export interface PictureHeader {
 }
 
 export interface PictureMessage extends PictureHeader {
+  /** Of a scene. */
+  labels?: readonly SceneLabel[];
   /** A view into the message, not a copy. */
   jpeg: Uint8Array<ArrayBuffer>;
 }

@@ -15,11 +15,16 @@ export interface Permalink {
   t_ns: number | null;
   /** Name of a ready-made layout; null = none is asked for. */
   layout: string | null;
+  /** Viewpoint and contents of the 3D view (scene/scene_look.ts); '' = as usual. */
+  view: string;
+  show: string;
+  /** Pictures of all runs, not only of the main one. */
+  sideBySide: boolean;
 }
 
 /**
- * "#layout=NAME&run=ID&run=ID@OFFSET&main=ID&t=SECONDS": OFFSET in seconds, by default 0. Unknown
- * parts are ignored.
+ * "#layout=NAME&run=ID&run=ID@OFFSET&main=ID&view=VIEW&show=PARTS&pictures=main&t=SECONDS": OFFSET in
+ * seconds, by default 0. Unknown parts are ignored.
  */
 export function parsePermalink(hash: string): Permalink {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
@@ -30,10 +35,14 @@ export function parsePermalink(hash: string): Permalink {
     main: main === '' ? null : main,
     t_ns: nanoseconds(fields.get('t')),
     layout: fields.get('layout'),
+    view: fields.get('view') ?? '',
+    show: fields.get('show') ?? '',
+    sideBySide: fields.get('pictures') !== 'main',
   };
 }
 
-export function formatPermalink({ runs, main, t_ns, layout }: Permalink): string {
+export function formatPermalink(link: Permalink): string {
+  const { runs, main, t_ns, layout, view, show, sideBySide } = link;
   const fields = new URLSearchParams();
   if (layout !== null) fields.set('layout', layout);
   if (runs.length === 0) return layout === null ? '' : `#${fields.toString()}`;
@@ -41,6 +50,9 @@ export function formatPermalink({ runs, main, t_ns, layout }: Permalink): string
     fields.append('run', offset_ns === 0 ? id : `${id}@${(offset_ns / 1e9).toFixed(3)}`);
   }
   if (main !== null && main !== runs[0]?.id) fields.set('main', main);
+  if (view !== '') fields.set('view', view);
+  if (show !== '') fields.set('show', show);
+  if (!sideBySide) fields.set('pictures', 'main');
   if (t_ns !== null) fields.set('t', (t_ns / 1e9).toFixed(3));
   return `#${fields.toString()}`;
 }

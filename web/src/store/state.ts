@@ -1,7 +1,6 @@
 // The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
 import type { FieldError } from '../protocol/field_errors';
-import type { SceneMode, SceneView } from '../protocol/messages';
 import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type {
   CameraInfo,
@@ -21,6 +20,8 @@ import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
+import type { SceneLook } from './scene/scene_look';
+import { usualLook } from './scene/scene_look';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
@@ -31,8 +32,6 @@ export interface Notice {
   level: 'info' | 'error';
   text: string;
 }
-
-export type SceneOrbit = Pick<SceneView, 'azimuth_deg' | 'elevation_deg' | 'distance_m' | 'follow'>;
 
 const kNoRows = new RunData();
 const kNoPictures: ReadonlyMap<string, Picture> = new Map();
@@ -74,12 +73,7 @@ export class State {
   hover: Hover | null = null;
   /** What was asked about the pixel there, and the answer or why there is none. */
   pixel: { question: PixelQuestion; answer: PixelAnswer | string } | null = null;
-  sceneMode: SceneMode = 'chase';
-  sceneOrbits: Record<SceneMode, SceneOrbit> = {
-    chase: { azimuth_deg: 20, elevation_deg: 18, distance_m: 40, follow: true },
-    orbit: { azimuth_deg: 215, elevation_deg: 35, distance_m: 900, follow: true },
-    top: { azimuth_deg: 0, elevation_deg: 90, distance_m: 2400, follow: false },
-  };
+  scene: SceneLook = usualLook();
   notices: Notice[] = [];
   helpOpen = false;
   paletteOpen = false;

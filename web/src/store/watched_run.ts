@@ -1,5 +1,5 @@
 // One of the runs shown together: what the server sent about it, and how it is shown.
-import type { RunInstant, SeriesInfo } from '../protocol/messages';
+import type { RunInstant, SceneLabel, SeriesInfo } from '../protocol/messages';
 import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
 import type { ColourScale } from './pictures/colour_scale';
 import type { PictureRate } from './pictures/picture_rates';
@@ -14,6 +14,8 @@ export interface Picture {
   height_px: number;
   live: boolean;
   scale: ColourScale | null;
+  /** Of a scene. */
+  labels: readonly SceneLabel[];
   /** Of the image before it was reduced. */
   fullWidth_px: number;
   fullHeight_px: number;

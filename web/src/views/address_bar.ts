@@ -1,6 +1,7 @@
 // Synchronises the address bar and the store, so that a copied address shows the same run and
 // instant.
 import { formatPermalink, parsePermalink } from '../store/permalink';
+import { lookFrom, showText, viewText } from '../store/scene/scene_look';
 import { kDefaultLayout } from '../store/layouts/ready_layouts';
 import type { Context } from './view';
 
@@ -9,14 +10,16 @@ const kWrite_ms = 400;
 export function followAddress(context: Context): void {
   const { store, session, layouts } = context;
   const open = () => {
-    const { runs, main, t_ns, layout } = parsePermalink(location.hash);
+    const { runs, main, t_ns, layout, view, show, sideBySide } = parsePermalink(location.hash);
     if (layout !== null && layout !== layouts.shared) layouts.choose(layout);
+    context.scene.apply(lookFrom(view, show));
+    session.setSideBySide(sideBySide);
     session.showRuns(runs, main, t_ns);
   };
   window.addEventListener('hashchange', open);
   if (location.hash !== '') open();
   window.setInterval(() => {
-    const { watched, runId, clock } = store.state;
+    const { watched, runId, clock, scene, sideBySide } = store.state;
     if (runId !== null && clock === null) return;
     const t_ns = clock === null || clock.live ? null : clock.t_ns;
     const hash = formatPermalink({
@@ -24,6 +27,9 @@ export function followAddress(context: Context): void {
       main: runId,
       t_ns,
       layout: layoutToShow(context),
+      view: viewText(scene),
+      show: showText(scene),
+      sideBySide,
     });
     if (hash !== location.hash)
       history.replaceState(null, '', hash === '' ? location.pathname : hash);

@@ -2,6 +2,7 @@
 import type { Command } from '../store/palette';
 import { kPanelNames, kPanels } from '../store/layouts/panel_names';
 import { kReadyLayouts } from '../store/layouts/ready_layouts';
+import { kSceneParts } from '../store/scene/scene_look';
 import { kThemes, kThemeTitles } from '../store/themes';
 import { kShortcuts } from './shortcuts';
 import type { Context } from './view';
@@ -12,6 +13,7 @@ export function commandsOf(context: Context): Command[] {
   return [
     ...layoutCommands(context),
     ...panelCommands(context),
+    ...sceneCommands(context),
     ...themeCommands(context),
     ...shortcutCommands(context),
     ...pageCommands(context),
@@ -58,6 +60,16 @@ function panelCommands({ layouts }: Context): Command[] {
     run: () => layouts.hide(name),
   }));
   return [...show, ...hide];
+}
+
+function sceneCommands({ scene, store }: Context): Command[] {
+  return kSceneParts.map(({ part, label, hint }) => ({
+    id: `scene ${part}`,
+    group: '3D view',
+    title: `${store.state.scene.show.has(part) ? 'Hide' : 'Show'} ${label.toLowerCase()}`,
+    words: hint,
+    run: () => scene.togglePart(part),
+  }));
 }
 
 function themeCommands({ themes }: Context): Command[] {

@@ -20,6 +20,7 @@ export class HelpOverlay implements View {
       ['Drag in 3D', 'turn the view'],
       ['Wheel in 3D', 'zoom'],
       ['Double-click in 3D', 'toggle following the aircraft'],
+      ['W A S D, Q E in 3D', 'fly in the free view; Shift = faster'],
       ['Wheel in a picture', 'zoom; all pictures of a camera follow'],
       ['Drag in a zoomed picture', 'move it'],
       ['Double-click in a picture', 'show it whole'],

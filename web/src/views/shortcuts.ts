@@ -99,6 +99,19 @@ export const kShortcuts: readonly Shortcut[] = [
   },
   { keys: ['3'], label: '3', what: 'top view', run: ({ scene }) => scene.setMode('top') },
   {
+    keys: ['4'],
+    label: '4',
+    what: 'view from the cockpit',
+    run: ({ scene }) => scene.setMode('onboard'),
+  },
+  { keys: ['5'], label: '5', what: 'free flight', run: ({ scene }) => scene.setMode('free') },
+  {
+    keys: ['i'],
+    label: 'I',
+    what: "camera's image on the ground in 3D",
+    run: ({ scene }) => scene.togglePart('image'),
+  },
+  {
     keys: ['f'],
     label: 'F',
     what: 'toggle following the aircraft',

@@ -4,7 +4,7 @@ import type { Cameras } from '../store/pictures/cameras';
 import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
-import type { SceneControl } from '../store/scene_control';
+import type { SceneControl } from '../store/scene/scene_control';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';

@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { formatPermalink, parsePermalink } from '../../src/store/permalink';
 
+const kUsual = { view: '', show: '', sideBySide: true };
 const alone = (id: string) => [{ id, offset_ns: 0 }];
 
 describe('permalink', () => {
@@ -10,6 +11,9 @@ describe('permalink', () => {
       main: null,
       t_ns: 12_345_000_000,
       layout: 'compare',
+      view: 'orbit,10.0,20.0,300,fixed',
+      show: 'aircraft,image',
+      sideBySide: false,
     };
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
@@ -20,17 +24,20 @@ describe('permalink', () => {
       main: 'r2',
       t_ns: 0,
       layout: null,
+      ...kUsual,
     };
     expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.500&main=r2&t=0.000');
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
 
   it('leaves the time out while it follows live', () => {
-    expect(formatPermalink({ runs: alone('r'), main: 'r', t_ns: null, layout: null })).toBe(
-      '#run=r',
+    expect(
+      formatPermalink({ runs: alone('r'), main: 'r', t_ns: null, layout: null, ...kUsual }),
+    ).toBe('#run=r');
+    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: null, ...kUsual })).toBe('');
+    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: 'fly', ...kUsual })).toBe(
+      '#layout=fly',
     );
-    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: null })).toBe('');
-    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: 'fly' })).toBe('#layout=fly');
   });
 
   it('takes a run once', () => {
@@ -38,6 +45,12 @@ describe('permalink', () => {
   });
 
   it.each(['', '#', '#t=4x', '#run=', '#t=', '#main='])('reads nothing from %s', (hash) => {
-    expect(parsePermalink(hash)).toEqual({ runs: [], main: null, t_ns: null, layout: null });
+    expect(parsePermalink(hash)).toEqual({
+      runs: [],
+      main: null,
+      t_ns: null,
+      layout: null,
+      ...kUsual,
+    });
   });
 });

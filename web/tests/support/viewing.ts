@@ -2,7 +2,7 @@
 import { StreamClient } from '../../src/connection/stream_client';
 import { Notices } from '../../src/store/notices';
 import { Player } from '../../src/store/player';
-import { SceneControl } from '../../src/store/scene_control';
+import { SceneControl } from '../../src/store/scene/scene_control';
 import { Session } from '../../src/store/session';
 import { Store } from '../../src/store/state';
 import { FakeSocket, FakeTimers } from './fake_socket';

@@ -10,9 +10,23 @@ import { kDefaultLayout, readyLayout } from './ready_layouts';
 const kKey = 'overfly.layouts';
 const kVersion = 1;
 const kMostOwn = 50;
+const kLongestLook = 300;
 export const kLongestName = 40;
 
 export type Storage = Pick<globalThis.Storage, 'getItem' | 'setItem'>;
+
+/** What a layout keeps of the 3D view and the pictures, as in an address. */
+export interface LayoutLook {
+  view: string;
+  show: string;
+  sideBySide: boolean;
+}
+
+/** Where the look comes from, and where it goes. */
+export interface LookKeeper {
+  look(): LayoutLook;
+  apply(look: LayoutLook): void;
+}
 
 /** The part of the screen that shows the panels. */
 export interface Arranger {
@@ -33,12 +47,15 @@ export class Layouts {
   /** What the viewer has made of the layout; null = nothing changed. */
   private changed: LayoutNode | null = null;
   private own = new Map<string, LayoutNode>();
+  /** Of own layouts. */
+  private looks = new Map<string, LayoutLook>();
   private arranger: Arranger | null = null;
 
   constructor(
     private readonly store: Store,
     private readonly notices: Notices,
     private readonly storage: Storage,
+    private readonly keeper: LookKeeper,
   ) {
     this.read();
   }
@@ -83,6 +100,13 @@ export class Layouts {
     this.changed = null;
     this.keep();
     this.arranger?.arrange();
+    this.applyLook();
+  }
+
+  /** Shows the 3D view and the pictures as they were when the layout was kept. */
+  applyLook(): void {
+    const look = this.looks.get(this.name);
+    if (look !== undefined) this.keeper.apply(look);
   }
 
   /** Undoes what the viewer changed. */
@@ -108,6 +132,7 @@ export class Layouts {
       return `There are ${kMostOwn} layouts already: delete one first.`;
     }
     this.own.set(name, tree);
+    this.looks.set(name, this.keeper.look());
     this.name = name;
     this.changed = null;
     this.keep();
@@ -116,6 +141,7 @@ export class Layouts {
 
   remove(name: string): void {
     if (!this.own.delete(name)) return;
+    this.looks.delete(name);
     if (this.name === name) this.choose(kDefaultLayout);
     else this.keep();
   }
@@ -142,6 +168,7 @@ export class Layouts {
       name: this.name,
       changed: this.changed,
       own: Object.fromEntries(this.own),
+      looks: Object.fromEntries(this.looks),
     };
     try {
       this.storage.setItem(kKey, JSON.stringify(kept));
@@ -167,7 +194,7 @@ export class Layouts {
   /** Takes what is in order. @return what is not */
   private take(kept: unknown): string[] {
     if (typeof kept !== 'object' || kept === null) return ['all'];
-    const { version, name, changed, own } = kept as Record<string, unknown>;
+    const { version, name, changed, own, looks } = kept as Record<string, unknown>;
     if (version !== kVersion || typeof name !== 'string') return ['all'];
     const lost: string[] = [];
     const entries = typeof own === 'object' && own !== null ? Object.entries(own) : [];
@@ -175,6 +202,10 @@ export class Layouts {
       const tree = title.length > kLongestName ? null : readLayout(value);
       if (tree === null) lost.push(title.slice(0, kLongestName));
       else this.own.set(title, tree);
+    }
+    for (const title of this.own.keys()) {
+      const look = readLook(looks, title);
+      if (look !== null) this.looks.set(title, look);
     }
     if (readyLayout(name) === undefined && !this.own.has(name)) {
       return lost.length > 0 ? lost : [name.slice(0, kLongestName)];
@@ -185,6 +216,16 @@ export class Layouts {
     if (this.changed === null) lost.push(this.title);
     return lost;
   }
+}
+
+/** What is wrong in the texts is left out when they are applied. */
+function readLook(looks: unknown, title: string): LayoutLook | null {
+  if (typeof looks !== 'object' || looks === null || !Object.hasOwn(looks, title)) return null;
+  const look = (looks as Record<string, unknown>)[title];
+  if (typeof look !== 'object' || look === null) return null;
+  const { view, show, sideBySide } = look as Record<string, unknown>;
+  const text = (value: unknown) => (typeof value === 'string' ? value.slice(0, kLongestLook) : '');
+  return { view: text(view), show: text(show), sideBySide: sideBySide !== false };
 }
 
 function parsed(text: string): unknown {

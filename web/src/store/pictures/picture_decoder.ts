@@ -51,7 +51,8 @@ export class PictureDecoder {
         const { frame, t_ns, width_px, height_px, live } = message;
         const { scale, fullWidth_px, fullHeight_px } = message;
         const size = { width_px, height_px, fullWidth_px, fullHeight_px };
-        this.done(name, { frame, t_ns, ...size, live, scale, bitmap });
+        const { labels = [] } = message;
+        this.done(name, { frame, t_ns, ...size, live, scale, labels, bitmap });
       } catch {
         this.failed(`picture of frame ${message.frame} of ${name} cannot be decoded`);
       }

@@ -6,7 +6,7 @@ import { LogPanel } from '../log_panel';
 import { DebugPanel } from '../pictures/debug_panel';
 import { PlotsPanel } from '../plots/plots_panel';
 import { RunList } from '../run_list';
-import { ScenePanel } from '../pictures/scene_panel';
+import { ScenePanel } from '../scene/scene_panel';
 import { VehicleCard } from '../vehicle/vehicle_card';
 import type { PanelName } from '../../store/layouts/panel_names';
 import type { Context, View } from '../view';

@@ -3,6 +3,7 @@ import { plotsCsv, plotsSvg } from '../../store/plots/plot_export';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
 import { curveStyle } from '../colours';
+import { download } from '../download';
 import { h } from '../dom';
 import { paint } from '../paint';
 
@@ -82,10 +83,4 @@ async function pngOf(svg: Blob): Promise<Blob> {
   } finally {
     URL.revokeObjectURL(url);
   }
-}
-
-function download(name: string, content: Blob): void {
-  const url = URL.createObjectURL(content);
-  h('a', { href: url, download: name }).click();
-  window.setTimeout(() => URL.revokeObjectURL(url), 1000);
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { LayoutNode } from '../../../src/store/layouts/layout_tree';
-import type { Arranger } from '../../../src/store/layouts/layouts';
+import type { Arranger, LayoutLook, LookKeeper } from '../../../src/store/layouts/layouts';
 import { Layouts } from '../../../src/store/layouts/layouts';
 import { Notices } from '../../../src/store/notices';
 import { Store } from '../../../src/store/state';
@@ -24,9 +24,20 @@ class FakeStorage {
   }
 }
 
+class FakeKeeper implements LookKeeper {
+  shown: LayoutLook = { view: '', show: '', sideBySide: true };
+  look(): LayoutLook {
+    return this.shown;
+  }
+  apply(look: LayoutLook): void {
+    this.shown = look;
+  }
+}
+
 function open(storage: FakeStorage) {
   const store = new Store();
-  const layouts = new Layouts(store, new Notices(store, () => undefined), storage);
+  const keeper = new FakeKeeper();
+  const layouts = new Layouts(store, new Notices(store, () => undefined), storage, keeper);
   let arranged = 0;
   const arranger: Arranger = {
     arrange: () => (arranged += 1),
@@ -38,7 +49,7 @@ function open(storage: FakeStorage) {
   };
   layouts.use(arranger);
   const said = () => store.state.notices.map(({ text }) => text);
-  return { layouts, said, arranged: () => arranged };
+  return { layouts, said, arranged: () => arranged, keeper };
 }
 
 describe('the layouts', () => {
@@ -121,6 +132,35 @@ describe('the layouts', () => {
     expect(said()[0]).toContain('Bad');
   });
 
+  it('keep how the 3D view and the pictures were with an own layout', () => {
+    const storage = new FakeStorage();
+    const first = open(storage);
+    const look = { view: 'orbit,1.0,2.0,300', show: 'image', sideBySide: false };
+    first.keeper.shown = look;
+    expect(first.layouts.saveAs('Mine')).toBeNull();
+    first.layouts.choose('fly');
+    expect(first.keeper.shown, 'a ready-made layout keeps what is shown').toBe(look);
+    const { layouts, keeper } = open(storage);
+    layouts.choose('Mine');
+    expect(keeper.shown).toEqual(look);
+  });
+
+  it('leave out a look that is none', () => {
+    const looks = { Mine: { view: 7, show: 'x'.repeat(900) }, Gone: 1 };
+    const text = JSON.stringify({
+      version: 1,
+      name: 'Mine',
+      changed: null,
+      own: { Mine: kTree },
+      looks,
+    });
+    const { layouts, keeper, said } = open(new FakeStorage(text));
+    layouts.applyLook();
+    expect(keeper.shown.view).toBe('');
+    expect(keeper.shown.show.length).toBeLessThan(400);
+    expect(said()).toEqual([]);
+  });
+
   it('work without a storage', () => {
     const refusing = {
       getItem: (): string | null => {
@@ -131,7 +171,12 @@ describe('the layouts', () => {
       },
     };
     const store = new Store();
-    const layouts = new Layouts(store, new Notices(store, () => undefined), refusing);
+    const layouts = new Layouts(
+      store,
+      new Notices(store, () => undefined),
+      refusing,
+      new FakeKeeper(),
+    );
     layouts.choose('camera');
     expect(layouts.current).toBe('camera');
   });

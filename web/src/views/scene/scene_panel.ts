@@ -1,0 +1,112 @@
+// The 3D view, drawn by the server and controlled here.
+import { formatNumber } from '../../store/format';
+import { rateText } from '../../store/pictures/picture_rates';
+import { shownAlignment } from '../../store/state';
+import type { Topic } from '../../store/state';
+import { tracksOf } from '../../store/tracks';
+import { estimateColour, kTruthColour } from '../colours';
+import { h, perFrame, rebuild, setText } from '../dom';
+import type { Panel } from '../panel';
+import { makePanel } from '../panel';
+import { standingStill, waitingText } from '../pictures/picture_panel';
+import type { Context, View } from '../view';
+import { LabelLayer } from './label_layer';
+import { PictureCanvas } from './picture_canvas';
+import { shootScene } from './scene_shot';
+import { steerScene } from './scene_steering';
+import { SceneTools } from './scene_tools';
+import { sceneWish } from './scene_wish';
+
+const kResizeWait_ms = 150;
+const kWidthRange_px = [64, 1920] as const;
+const kHeightRange_px = [64, 1440] as const;
+
+export class ScenePanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly picture = new PictureCanvas('3D view');
+  private readonly tools: SceneTools;
+  private readonly labels = new LabelLayer();
+  private readonly legend = h('div', { class: 'legend' });
+  private readonly readout = h('div', { class: 'scene-readout' });
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('scene', '3D view');
+    this.root = this.panel.root;
+    const { body } = this.panel;
+    this.tools = new SceneTools(context, () => {
+      void shootScene(context, { width: body.clientWidth, height: body.clientHeight });
+    });
+    this.panel.tools.append(...this.tools.buttons);
+    body.append(this.picture.canvas, this.labels.root, this.legend, this.readout, this.tools.sheet);
+    steerScene(context, body);
+    this.observeSize(body);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    const { state } = this.context.store;
+    if (changed.has('scene') || changed.has('run')) this.updateControls();
+    if (changed.has('run')) this.context.session.want('scene', sceneWish(state));
+    if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
+    const picture = state.pictures.get('scene') ?? null;
+    this.picture.show(picture);
+    this.labels.draw(state, picture);
+    const still = standingStill(state, state.main);
+    this.picture.markStale(still?.t_ns ?? null);
+    this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
+    this.panel.showEmpty(picture === null ? waitingText(state.main) : null);
+    this.panel.showRate(rateText(state.rates.get('scene')));
+  }
+
+  onHidden(): void {
+    this.context.session.want('scene', []);
+  }
+
+  private updateControls(): void {
+    const { state } = this.context.store;
+    this.tools.draw(state);
+    const { mode, orbits, eye } = state.scene;
+    const { azimuth_deg, elevation_deg, distance_m } = orbits[mode];
+    const angles = `${formatNumber(azimuth_deg, 0)}° ${formatNumber(elevation_deg, 0)}°`;
+    const place = [eye.x_m, eye.y_m, eye.z_m].map((value) => formatNumber(value, 0)).join(' ');
+    const far = mode === 'free' ? ` · ${place} m` : ` · ${formatNumber(distance_m, 0)} m`;
+    setText(this.readout, angles + (mode === 'onboard' ? '' : far));
+    const tracks = tracksOf(state);
+    const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
+    const key = JSON.stringify([state.runId, alignment, tracks.map(({ label }) => label)]);
+    rebuild(this.legend, key, () => [
+      ...tracks.map(({ name, label, colour }) =>
+        legendEntry(label, name === '' ? kTruthColour : estimateColour(colour)),
+      ),
+      ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
+    ]);
+  }
+
+  /** Requests pictures of the panel's size once the size is stable. */
+  private observeSize(area: HTMLElement): void {
+    let timer = 0;
+    let asked = '';
+    const ask = perFrame((size: { width: number; height: number }) => {
+      const width_px = even(size.width * window.devicePixelRatio, kWidthRange_px);
+      const height_px = even(size.height * window.devicePixelRatio, kHeightRange_px);
+      const key = `${width_px}x${height_px}`;
+      if (key === asked) return;
+      asked = key;
+      this.context.scene.setSize(width_px, height_px);
+    });
+    new ResizeObserver(([entry]) => {
+      if (entry === undefined) return;
+      const { width, height } = entry.contentRect;
+      clearTimeout(timer);
+      timer = window.setTimeout(() => ask({ width, height }), asked === '' ? 0 : kResizeWait_ms);
+    }).observe(area);
+  }
+}
+
+function legendEntry(name: string, colour: string): HTMLElement {
+  return h('span', {}, h('i', { style: `background:${colour}` }), name);
+}
+
+function even(value: number, [low, high]: readonly [number, number]): number {
+  return Math.min(high, Math.max(low, Math.round(value / 2) * 2));
+}
