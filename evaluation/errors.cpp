@@ -40,11 +40,16 @@ void add_errors(const std::vector<MatchedPose>& matches,
                 AlignmentScore* score) {
   const Eigen::Quaterniond R_camera_body = options.T_body_camera.rotation.conjugate();
   std::vector<double> euler_deg;
+  std::vector<double> horizontal_m;
+  std::vector<double> vertical_m;
   std::vector<Pose> aligned;
   for (const MatchedPose& match : matches) {
     const Pose estimate = score->S_world_vo * match.T_vo_camera;
     const Pose& truth = match.T_world_camera;
-    score->position_errors_m.push_back((estimate.translation - truth.translation).norm());
+    const Eigen::Vector3d error_m = estimate.translation - truth.translation;
+    score->position_errors_m.push_back(error_m.norm());
+    horizontal_m.push_back(error_m.head<2>().norm());
+    vertical_m.push_back(error_m.z());
     if (!score->degenerate) {
       score->rotation_errors_deg.push_back(
           deg_from_rad(rotation_angle_rad(truth.rotation, estimate.rotation)));
@@ -55,6 +60,8 @@ void add_errors(const std::vector<MatchedPose>& matches,
   }
   score->matched = static_cast<int>(matches.size());
   score->position_m = statistics_of(score->position_errors_m);
+  score->horizontal_rmse_m = rms(horizontal_m);
+  score->vertical_rmse_m = rms(vertical_m);
   if (!score->degenerate) {
     score->rotation_deg = statistics_of(score->rotation_errors_deg);
     score->rotation_euler_norm_deg = statistics_of(euler_deg);

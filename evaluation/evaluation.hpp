@@ -108,6 +108,10 @@ struct AlignmentScore {
   std::vector<double> position_errors_m;
   std::vector<double> rotation_errors_deg;  ///< geodesic angle; empty if degenerate
   ErrorStatistics position_m;
+  /// Root mean squares of its horizontal and vertical parts: the sum of their squares is that of
+  /// position_m.rmse. Empty in scores of files that do not have them.
+  std::optional<double> horizontal_rmse_m;
+  std::optional<double> vertical_rmse_m;
   /// Geodesic angle. This and the next field are empty if the alignment is degenerate.
   std::optional<ErrorStatistics> rotation_deg;
   std::optional<ErrorStatistics> rotation_euler_norm_deg;

@@ -51,18 +51,28 @@ double rotation_angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond&
   return 2.0 * std::atan2(difference.vec().norm(), std::abs(difference.w()));
 }
 
+namespace {
+
+/// Between unit vectors less than a right angle apart: with the unit vector m half way between
+/// them, the rotation is the quaternion (a . m, a x m).
+Eigen::Quaterniond small_rotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d m = (a + b).normalized();
+  const Eigen::Vector3d v = a.cross(m);
+  return Eigen::Quaterniond(a.dot(m), v.x(), v.y(), v.z()).normalized();
+}
+
+}  // namespace
+
 Eigen::Quaterniond shortest_rotation(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d a = from.normalized();
   const Eigen::Vector3d b = to.normalized();
-  // With the unit vector m half way between them, the rotation is the quaternion (a . m, a x m).
-  const Eigen::Vector3d sum = a + b;
-  if (sum.norm() < 1e-12) {
-    const Eigen::Vector3d axis = a.unitOrthogonal();
-    return {0.0, axis.x(), axis.y(), axis.z()};
-  }
-  const Eigen::Vector3d m = sum.normalized();
-  const Eigen::Vector3d v = a.cross(m);
-  return Eigen::Quaterniond(a.dot(m), v.x(), v.y(), v.z()).normalized();
+  if (a.dot(b) >= 0.0) return small_rotation(a, b);
+  // Half a turn about an axis perpendicular to both takes a to -a, from where it is not far.
+  Eigen::Vector3d axis = a.cross(b);
+  if (axis.norm() < 1e-8) axis = a.unitOrthogonal();
+  axis = (axis - a * a.dot(axis)).normalized();
+  return (small_rotation(-a, b) * Eigen::Quaterniond(0.0, axis.x(), axis.y(), axis.z()))
+      .normalized();
 }
 
 namespace {

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   add_evaluate_command(app, exit_code);
   add_sweep_command(app, exit_code);
   add_compare_command(app, exit_code);
+  add_table_command(app, exit_code);
   add_report_command(app, exit_code);
   add_agreement_command(app, exit_code);
   add_render_command(app, exit_code);

@@ -14,20 +14,19 @@ namespace fs = std::filesystem;
 
 using ResultsByFlight = std::map<std::string, const SweepResult*>;
 
-/// Completed flights by what they have in common with the other sweep's. A flight that was flown by
-/// several versions of the program counts once.
+/// Completed flights by what they have in common with the other sweep's.
 ResultsByFlight results_by_flight(const SweepResults& results,
                                   const std::string& estimator,
                                   std::size_t& failed) {
   ResultsByFlight by_flight;
-  for (const auto& [key, result] : results.by_key()) {
-    if (!estimator.empty() && result.estimator != estimator) continue;
-    if (!result.completed()) {
+  for (const SweepResult* result : results.newest()) {
+    if (!estimator.empty() && result->estimator != estimator) continue;
+    if (!result->completed()) {
       ++failed;
       continue;
     }
-    const nlohmann::json identity = {result.cell, result.repeat, result.seed, result.estimator};
-    by_flight.insert_or_assign(identity.dump(), &result);
+    const nlohmann::json identity = {result->cell, result->repeat, result->seed, result->estimator};
+    by_flight.insert_or_assign(identity.dump(), result);
   }
   return by_flight;
 }

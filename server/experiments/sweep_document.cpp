@@ -135,7 +135,6 @@ Result<Sweep> sweep_from(Json document, const fs::path& folder) {
 }  // namespace
 
 Result<Sweep> load_sweep(const fs::path& file) {
-  constexpr std::uint64_t kMaxSweepBytes = std::uint64_t{4} << 20U;
   Result<Json> document = read_json(file, kMaxSweepBytes);
   if (!document) return document.error();
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();

@@ -15,6 +15,8 @@ namespace overfly::server::experiments {
 
 /// Maximum number of cells of a sweep.
 inline constexpr std::size_t kMaxCells = 10'000;
+/// Maximum size of a sweep file.
+inline constexpr std::uint64_t kMaxSweepBytes = std::uint64_t{4} << 20U;
 
 struct AxisValue {
   nlohmann::json value;  ///< as shown: a number, a text, ...

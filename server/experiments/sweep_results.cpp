@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <optional>
 #include <string_view>
@@ -87,7 +88,9 @@ Result<SweepResults> SweepResults::read(const fs::path& folder) {
     const auto document = json_from_outside<Json>(line, results.file_.string());
     std::optional<SweepResult> result =
         document ? result_from(*document) : std::optional<SweepResult>();
+    const std::size_t number = results.lines_++;
     if (result) {
+      result->line = number;
       std::string key = result->key;
       results.by_key_.insert_or_assign(std::move(key), std::move(*result));
     } else {
@@ -120,8 +123,25 @@ Status SweepResults::add(const SweepResult& result) {
   if (Status status = append_line(file_, json_of_result(result).dump() + "\n"); !status) {
     return status;
   }
-  by_key_.insert_or_assign(result.key, result);
+  SweepResult& added = by_key_[result.key];
+  added = result;
+  added.line = lines_++;
   return {};
+}
+
+std::vector<const SweepResult*> SweepResults::newest() const {
+  std::map<std::string, const SweepResult*> by_flight;
+  for (const auto& [key, result] : by_key_) {
+    const Json flight = {result.cell, result.repeat, result.seed, result.estimator};
+    const SweepResult*& kept = by_flight[flight.dump()];
+    if (kept == nullptr || kept->line < result.line) kept = &result;
+  }
+  std::vector<const SweepResult*> newest;
+  for (const auto& [flight, result] : by_flight) newest.push_back(result);
+  std::sort(newest.begin(), newest.end(), [](const SweepResult* a, const SweepResult* b) {
+    return a->line < b->line;
+  });
+  return newest;
 }
 
 }  // namespace overfly::server::experiments

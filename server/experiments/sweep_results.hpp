@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "evaluation/evaluation.hpp"
@@ -23,6 +24,7 @@ struct SweepResult {
   /// Of a completed flight. A flight that failed says nothing about the estimator.
   evaluation::Outcome outcome = evaluation::Outcome::kNotInitialised;
   double duration_s = 0.0;  ///< of the flight, by the clock on the wall
+  std::size_t line = 0;     ///< of results.jsonl, from 0: a later line is newer
 
   [[nodiscard]] bool completed() const { return error.empty(); }
 };
@@ -44,6 +46,9 @@ class SweepResults {
   /// Errors: kIo.
   Status add(const SweepResult& result);
   [[nodiscard]] const std::map<std::string, SweepResult>& by_key() const { return by_key_; }
+  /// The newest result of each flight (cell, repeat, seed, estimator): those of other versions of
+  /// the program or of an estimator that has changed since are left out. In the order of the lines.
+  [[nodiscard]] std::vector<const SweepResult*> newest() const;
   /// Number of lines that are no results.
   [[nodiscard]] int unreadable_lines() const { return unreadable_lines_; }
 
@@ -51,6 +56,7 @@ class SweepResults {
   std::filesystem::path file_;
   std::map<std::string, SweepResult> by_key_;
   int unreadable_lines_ = 0;
+  std::size_t lines_ = 0;
   std::size_t whole_lines_bytes_ = 0;  ///< size of the file without a last line that was cut off
 };
 

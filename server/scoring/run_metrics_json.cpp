@@ -72,6 +72,8 @@ Json alignment_json(const AlignmentScore& score) {
       {"position_mean_m", score.position_m.mean},
       {"position_median_m", score.position_m.median},
       {"position_max_m", score.position_m.max},
+      {"horizontal_rmse_m", or_null(score.horizontal_rmse_m)},
+      {"vertical_rmse_m", or_null(score.vertical_rmse_m)},
       {"position_rmse_hold_m", score.position_rmse_hold_m},
       {"rotation_rmse_deg", rotation(&ErrorStatistics::rmse)},
       {"rotation_mean_deg", rotation(&ErrorStatistics::mean)},
@@ -211,6 +213,8 @@ AlignmentScore read_alignment(const FileField& field, AlignmentMode mode) {
   take(field, "position_mean_m", score.position_m.mean);
   take(field, "position_median_m", score.position_m.median);
   take(field, "position_max_m", score.position_m.max);
+  take(field, "horizontal_rmse_m", score.horizontal_rmse_m);
+  take(field, "vertical_rmse_m", score.vertical_rmse_m);
   take(field, "position_rmse_hold_m", score.position_rmse_hold_m);
   std::optional<double> rotation_rmse_deg;
   take(field, "rotation_rmse_deg", rotation_rmse_deg);

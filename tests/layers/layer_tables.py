@@ -211,6 +211,8 @@ MAY_INCLUDE = {
     "server/experiments": ["core/", "evaluation", "evaluation/statistics", "server/files/",
                            "server/scenario/", "server/record/", "server/scoring/",
                            "server/runs/run_memory.hpp"],
+    "server/experiments/tables": ["core/", "evaluation", "evaluation/statistics", "server/files/",
+                                  "server/scoring/", "server/report/plot", "server/experiments"],
     "server/net/http": ["core/"],
     "server/net/stream": ["core/", "server/record/", "server/scoring/", "server/timeline/",
                           "server/views/", "server/net/http/"],

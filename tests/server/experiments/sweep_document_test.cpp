@@ -136,6 +136,7 @@ TEST(SweepFiles, AreValid) {
   std::size_t files = 0;
   for (const auto& entry :
        fs::directory_iterator(fs::path(OVERFLY_SOURCE_DIR) / "scenarios/sweeps")) {
+    if (!entry.is_regular_file()) continue;
     const auto sweep = load_sweep(entry.path());
     ASSERT_TRUE(sweep.ok()) << sweep.error().message;
     const auto cells = cells_of(*sweep);

@@ -1,0 +1,105 @@
+// overfly table: the results of a sweep as tables.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/app/commands/commands.hpp"
+#include "server/app/exit_code.hpp"
+#include "server/experiments/tables/sweep_tables.hpp"
+#include "server/files/whole_file.hpp"
+
+namespace overfly::app {
+namespace {
+
+namespace experiments = server::experiments;
+
+struct TableArguments {
+  std::string folder;
+  std::string format = "markdown";
+  std::string out;
+  std::string published;
+  std::vector<std::string> counterparts;
+  double margin_percent = 10.0;
+};
+
+Result<experiments::TableOptions> options_from(const TableArguments& arguments) {
+  experiments::TableOptions options;
+  options.differences.margin = arguments.margin_percent / 100.0;
+  if (!arguments.published.empty()) {
+    Result<experiments::PublishedErrors> published =
+        experiments::read_published_errors(arguments.published);
+    if (!published) return published.error();
+    options.published = std::move(*published);
+  }
+  for (const std::string& text : arguments.counterparts) {
+    const std::size_t sign = text.find('=');
+    if (sign == std::string::npos) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "--as " + text + ": must be ESTIMATOR=PUBLISHED_NAME"};
+    }
+    options.counterparts[text.substr(0, sign)] = text.substr(sign + 1);
+  }
+  return options;
+}
+
+std::string text_of(const experiments::SweepTables& tables,
+                    const experiments::TableOptions& options,
+                    const std::string& format) {
+  if (format == "csv") return experiments::csv_from(tables);
+  if (format == "json") return experiments::json_from(tables).dump(2) + "\n";
+  const experiments::TableDocument document = experiments::document_from(tables, options);
+  if (format == "latex") return experiments::latex_from(document);
+  return format == "html" ? experiments::html_from(document) : experiments::markdown_from(document);
+}
+
+int table(const TableArguments& arguments) {
+  const Result<experiments::TableOptions> options = options_from(arguments);
+  if (!options) return report(options.error());
+  Result<experiments::SweepScores> scores = experiments::read_sweep_scores(arguments.folder);
+  if (!scores) return report(scores.error());
+  const auto tables = experiments::sweep_tables(std::move(*scores), *options);
+  if (!tables) return report(tables.error());
+  const std::string text = text_of(*tables, *options, arguments.format);
+  if (arguments.out.empty()) {
+    std::cout << text;
+    return kExitOk;
+  }
+  if (Status status = server::write_whole(arguments.out, text); !status) {
+    return report(status.error());
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_table_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<TableArguments>();
+  CLI::App* command =
+      app.add_subcommand("table", "Tables of a sweep: errors, outcomes, differences");
+  command->add_option("sweep", arguments->folder, "Folder of a sweep")->required();
+  command->add_option("--format", arguments->format, "markdown, latex, html, csv or json")
+      ->check(CLI::IsMember({"markdown", "latex", "html", "csv", "json"}))
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "Write to this file instead of the standard output");
+  command->add_option("--published",
+                      arguments->published,
+                      "Show the errors of this file beside the sweep's (JSON)");
+  command
+      ->add_option("--as",
+                   arguments->counterparts,
+                   "ESTIMATOR=PUBLISHED_NAME: which estimators to compare with published ones")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--margin-percent",
+                   arguments->margin_percent,
+                   "Differences within this share of the second estimator's median are practically "
+                   "equal")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->callback([arguments, &exit_code] { exit_code = table(*arguments); });
+}
+
+}  // namespace overfly::app

@@ -1,0 +1,118 @@
+#include "server/experiments/tables/cell_scores.hpp"
+
+#include <cmath>
+
+namespace overfly::server::experiments {
+namespace {
+
+using evaluation::AlignmentMode;
+using evaluation::Outcome;
+
+std::optional<Spread> spread_of(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return Spread{values.size(), evaluation::quartiles_of(values)};
+}
+
+struct ErrorValues {
+  std::vector<double> position_m;
+  std::vector<double> rotation_deg;
+  std::vector<double> horizontal_m;
+  std::vector<double> vertical_m;
+  std::vector<double> percent_of_path;
+
+  [[nodiscard]] CellErrors spreads() const {
+    return {spread_of(position_m),
+            spread_of(rotation_deg),
+            spread_of(horizontal_m),
+            spread_of(vertical_m),
+            spread_of(percent_of_path)};
+  }
+};
+
+void keep(std::vector<double>& values, const std::optional<double>& value) {
+  if (value && std::isfinite(*value)) values.push_back(*value);
+}
+
+void add_flight(const FlightScore& flight, const ErrorConvention& convention, ErrorValues& values) {
+  const auto found = flight.score.alignments.find(convention.mode);
+  if (!convention.counts(flight) || found == flight.score.alignments.end()) return;
+  const evaluation::AlignmentScore& score = found->second;
+  const double position_m = convention.hold ? score.position_rmse_hold_m : score.position_m.rmse;
+  keep(values.position_m, position_m);
+  const auto& rotation = convention.euler_norm ? score.rotation_euler_norm_deg : score.rotation_deg;
+  if (rotation) keep(values.rotation_deg, rotation->rmse);
+  keep(values.horizontal_m, score.horizontal_rmse_m);
+  keep(values.vertical_m, score.vertical_rmse_m);
+  if (flight.path_length_m > 0.0) {
+    keep(values.percent_of_path, 100.0 * position_m / flight.path_length_m);
+  }
+}
+
+CellScores scores_of(const SweepScores& scores,
+                     const nlohmann::json& cell,
+                     const std::string& estimator) {
+  CellScores row;
+  row.cell = cell;
+  row.estimator = estimator;
+  std::vector<ErrorValues> values(all_conventions().size());
+  for (const FlightScore& flight : scores.flights) {
+    if (flight.estimator != estimator || flight.cell != cell) continue;
+    row.baseline = is_baseline(flight.type);
+    ++row.flights;
+    row.initialised += flight.score.initialised_at_s ? 1 : 0;
+    row.completed += flight.outcome == Outcome::kCompleted ? 1 : 0;
+    row.texture_limited = row.texture_limited || flight.texture_limited;
+    ++row.outcomes[evaluation::to_string(flight.outcome)];
+    row.runs.push_back(flight.run);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      add_flight(flight, all_conventions()[i], values[i]);
+    }
+  }
+  row.success = evaluation::wilson_interval(row.completed, row.flights);
+  for (const ErrorValues& of_convention : values) row.errors.push_back(of_convention.spreads());
+  return row;
+}
+
+}  // namespace
+
+bool ErrorConvention::counts(const FlightScore& flight) const {
+  return completed_only ? flight.outcome == Outcome::kCompleted
+                        : flight.score.initialised_at_s.has_value();
+}
+
+const std::vector<ErrorConvention>& all_conventions() {
+  static const std::vector<ErrorConvention> conventions{
+      {"paper",
+       "Alignment init_scale (scale from the height at the first tracked pose), the last pose held "
+       "to the end of the flight, rotation as the norm of the errors of roll, pitch and yaw; of "
+       "flights that initialised, lost or not.",
+       AlignmentMode::kInitScale,
+       true,
+       true,
+       false},
+      {"sim3",
+       "Alignment sim3 (least squares), geodesic angle; of flights with the outcome COMPLETED.",
+       AlignmentMode::kSim3,
+       false,
+       false,
+       true}};
+  return conventions;
+}
+
+const ErrorConvention& paper_convention() { return all_conventions()[0]; }
+const ErrorConvention& sim3_convention() { return all_conventions()[1]; }
+
+bool is_baseline(const std::string& type) { return type.starts_with("baseline_"); }
+
+std::vector<CellScores> cell_scores(const SweepScores& scores) {
+  std::vector<CellScores> rows;
+  for (const nlohmann::json& cell : scores.cells) {
+    for (const std::string& estimator : scores.estimators) {
+      CellScores row = scores_of(scores, cell, estimator);
+      if (row.flights > 0) rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,49 @@
+// The flights of a sweep's folder with their scores.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "evaluation/evaluation.hpp"
+
+namespace overfly::server::experiments {
+
+/// One completed flight of one estimator.
+struct FlightScore {
+  nlohmann::json cell;  ///< axis name -> value
+  int repeat = 0;
+  std::string estimator;
+  std::string type;  ///< of the estimator
+  std::string run;   ///< its run folder, relative to the sweep's
+  double path_length_m = 0.0;
+  bool texture_limited = false;
+  evaluation::Outcome outcome = evaluation::Outcome::kNotInitialised;
+  evaluation::Score score;
+};
+
+struct ShownAxis {
+  std::string name;   ///< as in FlightScore::cell
+  std::string label;  ///< for people
+  std::string unit;   ///< may be empty
+};
+
+struct SweepScores {
+  std::string title;
+  std::string version;  ///< of the program that flew last
+  std::vector<ShownAxis> axes;
+  std::vector<std::string> estimators;  ///< names, in the sweep's order
+  std::vector<nlohmann::json> cells;    ///< of the flights, in ascending order of the axes' values
+  std::vector<FlightScore> flights;
+  std::size_t failed = 0;             ///< flights without a result
+  std::vector<std::string> problems;  ///< runs whose metrics cannot be read, each with its reason
+};
+
+/// Reads sweep.json, results.jsonl and the metrics of the newest result of every flight.
+/// Errors: as read_json and SweepResults::read; kNotFound if the folder has no result.
+[[nodiscard]] Result<SweepScores> read_sweep_scores(const std::filesystem::path& folder);
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,90 @@
+// Statistics against what SciPy and R say (record_reference.py).
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <vector>
+
+#include "evaluation/statistics/paired_bootstrap.hpp"
+#include "evaluation/statistics/sample_quantile.hpp"
+
+namespace overfly::evaluation {
+namespace {
+
+nlohmann::json reference() {
+  std::ifstream file(OVERFLY_SOURCE_DIR "/tests/evaluation/statistics/statistics_reference.json");
+  return nlohmann::json::parse(file);
+}
+
+TEST(SampleQuantile, AgreesWithNumPy) {
+  for (const auto& entry : reference().at("quantiles")) {
+    EXPECT_NEAR(sample_quantile(entry.at("values"), entry.at("share")),
+                entry.at("quantile").get<double>(),
+                1e-12)
+        << entry;
+  }
+}
+
+TEST(Holm, AgreesWithR) {
+  for (const auto& entry : reference().at("holm")) {
+    const std::vector<double> adjusted = holm_adjusted(entry.at("p"));
+    const std::vector<double> expected = entry.at("adjusted");
+    ASSERT_EQ(adjusted.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-12);
+  }
+  EXPECT_TRUE(holm_adjusted({}).empty());
+}
+
+TEST(PairedBootstrap, AgreesWithSciPy) {
+  for (const auto& entry : reference().at("bootstrap")) {
+    const PairedDifference difference = paired_bootstrap(entry.at("a"), entry.at("b"));
+    EXPECT_NEAR(difference.median, entry.at("median").get<double>(), 1e-12);
+    // 10 000 resamples against 400 000: the medians lie on a grid of steps up to 0.015.
+    EXPECT_NEAR(difference.low, entry.at("low").get<double>(), 0.0051) << entry;
+    EXPECT_NEAR(difference.high, entry.at("high").get<double>(), 0.0051) << entry;
+  }
+}
+
+TEST(PairedBootstrap, FindsADifferenceAndFindsNoneWhereThereIsNone) {
+  const nlohmann::json cases = reference().at("bootstrap");
+  EXPECT_LT(paired_bootstrap(cases[0].at("a"), cases[0].at("b")).p_value, 0.001);
+  EXPECT_GT(paired_bootstrap(cases[1].at("a"), cases[1].at("b")).p_value, 0.2);
+  const PairedDifference same = paired_bootstrap({1.0, 2.0, 3.0}, {1.0, 2.0, 3.0});
+  EXPECT_EQ(same.median, 0.0);
+  EXPECT_EQ(same.p_value, 1.0);
+}
+
+/// Of pairs without a difference, about one in twenty has an interval without 0.
+TEST(PairedBootstrap, IsRarelyWrongAboutPairsThatDoNotDiffer) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  int wrong = 0;
+  constexpr int kSamples = 400;
+  for (int k = 0; k < kSamples; ++k) {
+    std::vector<double> a;
+    std::vector<double> b;
+    for (int i = 0; i < 24; ++i) {
+      const double common = 10.0 * normal(generator);
+      a.push_back(common + normal(generator));
+      b.push_back(common + normal(generator));
+    }
+    const PairedDifference difference = paired_bootstrap(a, b, {1000, 5});
+    wrong += difference.low > 0.0 || difference.high < 0.0 ? 1 : 0;
+  }
+  // Binomial(400, 0.05) has a standard deviation of 4.4; the percentile interval of 24 pairs is a
+  // little too short.
+  EXPECT_GT(wrong, 5);
+  EXPECT_LT(wrong, 40);
+}
+
+TEST(PairedBootstrap, IsTheSameForTheSameSeed) {
+  const nlohmann::json cases = reference().at("bootstrap");
+  const PairedDifference first = paired_bootstrap(cases[0].at("a"), cases[0].at("b"));
+  const PairedDifference again = paired_bootstrap(cases[0].at("a"), cases[0].at("b"));
+  EXPECT_EQ(first.low, again.low);
+  EXPECT_EQ(first.p_value, again.p_value);
+}
+
+}  // namespace
+}  // namespace overfly::evaluation

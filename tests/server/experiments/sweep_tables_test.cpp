@@ -1,0 +1,278 @@
+// Tables of a folder of made-up results.
+#include "server/experiments/tables/sweep_tables.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "server/scoring/run_metrics_json.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using evaluation::AlignmentMode;
+using evaluation::Outcome;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+constexpr double kPathM = 1000.0;
+
+/// What one estimator does in one flight. Without a position error it does not initialise.
+struct Made {
+  std::string estimator;
+  double height_m = 0.0;
+  int repeat = 0;
+  std::optional<double> position_m;
+  std::optional<double> rotation_deg;
+  Outcome outcome = Outcome::kCompleted;
+  std::string type = "process";
+};
+
+evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
+  evaluation::AlignmentScore score;
+  score.mode = mode;
+  score.position_m.rmse = factor * *made.position_m;
+  score.position_rmse_hold_m = 2.0 * score.position_m.rmse;
+  score.horizontal_rmse_m = 0.6 * score.position_m.rmse;
+  score.vertical_rmse_m = 0.8 * score.position_m.rmse;
+  if (made.rotation_deg) {
+    score.rotation_deg.emplace().rmse = *made.rotation_deg;
+    score.rotation_euler_norm_deg.emplace().rmse = 1.5 * *made.rotation_deg;
+  }
+  return score;
+}
+
+class SweepTablesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(::testing::TempDir()) /
+        ("tables_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "sweep.json")
+        << Json{{"title", "Made | up"},
+                {"version", "0.1 abc"},
+                {"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
+                {"estimator_names", {"one", "two", "hold"}}};
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void add(const Made& made, const std::string& key = "") {
+    const std::string id =
+        key.empty() ? "r" + std::to_string(number_) : key + std::to_string(number_);
+    ++number_;
+    RunMetrics metrics;
+    metrics.flight.path_length_m = kPathM;
+    EstimatorMetrics& estimator = metrics.estimators[made.estimator];
+    estimator.type = made.type;
+    estimator.score.outcome = made.outcome;
+    if (made.position_m) {
+      estimator.score.initialised_at_s = 1.0;
+      estimator.score.alignments[AlignmentMode::kInitScale] =
+          alignment(AlignmentMode::kInitScale, made, 1.0);
+      estimator.score.alignments[AlignmentMode::kSim3] = alignment(AlignmentMode::kSim3, made, 0.1);
+    }
+    fs::create_directories(folder_ / "runs" / id);
+    std::ofstream(folder_ / "runs" / id / "metrics.json") << json_from(metrics);
+    std::ofstream(folder_ / "results.jsonl", std::ios::app)
+        << Json{{"key", id},
+                {"cell", {{"h", made.height_m}}},
+                {"repeat", made.repeat},
+                {"seed", 1 + made.repeat},
+                {"estimator", made.estimator},
+                {"run", "runs/" + id},
+                {"status", "completed"},
+                {"error", ""},
+                {"outcome", evaluation::to_string(made.outcome)},
+                {"duration_s", 1.0}}
+        << "\n";
+  }
+
+  SweepTables tables(const TableOptions& options = {}) {
+    Result<SweepScores> scores = read_sweep_scores(folder_);
+    EXPECT_TRUE(scores) << (scores ? "" : scores.error().message);
+    Result<SweepTables> tables = sweep_tables(std::move(*scores), options);
+    EXPECT_TRUE(tables) << (tables ? "" : tables.error().message);
+    return std::move(*tables);
+  }
+  std::string markdown(const TableOptions& options = {}) {
+    return markdown_from(document_from(tables(options), options));
+  }
+
+  fs::path folder_;
+  int number_ = 0;
+};
+
+TEST_F(SweepTablesTest, HighlightsTheLowestAndMarksCellsWithoutACountingFlight) {
+  add({"one", 50, 0, 2.0, 0.1});
+  add({"two", 50, 0, 1.0, 0.3});
+  add({"one", 100, 0, std::nullopt, std::nullopt, Outcome::kNotInitialised});
+  add({"two", 100, 0, 4.0, 0.2, Outcome::kLost});
+  const std::string text = markdown();
+  // Convention paper: held errors, Euler norm, also of the lost flight.
+  EXPECT_THAT(text,
+              HasSubstr("| 50.0 | 4.00 | **2.00** |  | **0.150** | 0.450 |  |\n"
+                        "| 100.0 | X | **8.00** |  | X | **0.300** |  |\n"));
+  // Convention sim3: only the completed flights.
+  EXPECT_THAT(text,
+              HasSubstr("| 50.0 | 0.200 | **0.100** |  | **0.100** | 0.300 |  |\n"
+                        "| 100.0 | X | X |  | X | X |  |\n"));
+  EXPECT_THAT(text, HasSubstr("Height [m]"));
+  EXPECT_THAT(text, HasSubstr("one rotation [deg]"));
+  EXPECT_THAT(text, HasSubstr("# Made \\| up"));
+}
+
+TEST_F(SweepTablesTest, AnXEntersNoMedian) {
+  add({"one", 50, 0, 1.0, 0.1});
+  add({"one", 50, 1, 3.0, 0.1});
+  add({"one", 50, 2, std::nullopt, std::nullopt, Outcome::kNotInitialised});
+  const SweepTables made = tables();
+  ASSERT_EQ(made.rows.size(), 1U);
+  const CellScores& row = made.rows[0];
+  EXPECT_EQ(row.flights, 3);
+  EXPECT_EQ(row.initialised, 2);
+  EXPECT_EQ(row.completed, 2);
+  EXPECT_DOUBLE_EQ(row.errors[1].position_m->quartiles.median, 0.2);
+  EXPECT_EQ(row.errors[1].position_m->flights, 2U);
+  EXPECT_DOUBLE_EQ(row.errors[1].percent_of_path->quartiles.median, 0.02);
+  EXPECT_DOUBLE_EQ(row.errors[1].horizontal_m->quartiles.median, 0.12);
+  EXPECT_THAT(markdown(), HasSubstr("0.200 (2/3)"));
+  EXPECT_THAT(markdown(), HasSubstr("2 COMPLETED, 1 NOT_INITIALISED"));
+}
+
+TEST_F(SweepTablesTest, TiesAreHighlightedTogether) {
+  add({"one", 50, 0, 1.0, 0.1});
+  add({"two", 50, 0, 1.0, 0.1});
+  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | **2.00** | **2.00** |"));
+}
+
+TEST_F(SweepTablesTest, MarksEstimatorsThatDoNotBeatABaseline) {
+  add({"one", 50, 0, 5.0, 0.1});
+  add({"two", 50, 0, 1.0, 0.4});
+  add({"hold", 50, 0, 4.0, 0.3, Outcome::kCompleted, "baseline_hold"});
+  const std::string text = markdown();
+  EXPECT_THAT(text, HasSubstr("| 50.0 | 10.0 † | **2.00** | 8.00 | **0.150** | 0.600 † | 0.450 |"));
+  EXPECT_THAT(text, HasSubstr("the best baseline of the cell is at least as good"));
+}
+
+TEST_F(SweepTablesTest, SaysWhatAnAlignmentDoesNotDetermine) {
+  add({"one", 50, 0, 1.0, std::nullopt});
+  add({"two", 50, 0, 1.0, 0.1});
+  EXPECT_THAT(markdown(), HasSubstr("| **2.00** | **2.00** |  | - | **0.150** |"));
+}
+
+TEST_F(SweepTablesTest, ComparesEstimatorsOnCommonCells) {
+  for (int k = 0; k < 12; ++k) {
+    add({"one", 50.0 * k, 0, 1.0 + 0.1 * k, 0.1});
+    add({"two", 50.0 * k, 0, 1.5 + 0.11 * k, 0.1});
+  }
+  add({"one", 9000, 0, 1.0, 0.1});
+  const SweepTables made = tables();
+  const EstimatorDifference& position = made.differences[1].front();
+  EXPECT_EQ(position.first, "one");
+  EXPECT_EQ(position.second, "two");
+  EXPECT_EQ(position.difference.pairs, 12U);
+  EXPECT_EQ(position.only_first, 1U);
+  EXPECT_EQ(position.verdict, DifferenceVerdict::kFirstBetter);
+  EXPECT_LT(position.difference.high, 0.0);
+  const auto rotation = std::find_if(made.differences[1].begin(),
+                                     made.differences[1].end(),
+                                     [](const auto& d) { return d.quantity == "rotation_deg"; });
+  EXPECT_EQ(rotation->verdict, DifferenceVerdict::kPracticallyEqual);
+  EXPECT_THAT(markdown(), HasSubstr("| one is better |"));
+  EXPECT_THAT(markdown(), HasSubstr("practically equal (within 10 %)"));
+}
+
+TEST_F(SweepTablesTest, DecidesNothingOnFewCells) {
+  for (int k = 0; k < 4; ++k) {
+    add({"one", 50.0 * k, 0, 1.0, 0.1});
+    add({"two", 50.0 * k, 0, 9.0, 0.1});
+  }
+  EXPECT_EQ(tables().differences[0].front().verdict, DifferenceVerdict::kTooFewCells);
+}
+
+TEST_F(SweepTablesTest, TakesTheNewestResultOfAFlight) {
+  add({"one", 50, 0, 7.0, 0.1}, "z");  // an older version's, with a key that sorts last
+  add({"one", 50, 0, 1.0, 0.1}, "a");
+  const SweepTables made = tables();
+  ASSERT_EQ(made.rows.size(), 1U);
+  EXPECT_EQ(made.rows[0].flights, 1);
+  EXPECT_DOUBLE_EQ(made.rows[0].errors[1].position_m->quartiles.median, 0.1);
+}
+
+TEST_F(SweepTablesTest, ShowsPublishedErrorsAndWhetherTheOrderIsTheSame) {
+  add({"one", 50, 0, 2.0, 0.1});
+  add({"two", 50, 0, 1.0, 0.3});
+  const fs::path file = folder_ / "published.json";
+  std::ofstream(file) << R"({"format_version": 1, "source": "S", "estimators": ["A", "B"], "rows": [
+    {"cell": {"h": 50}, "position_m": [10.5, 3.0], "rotation_deg": [null, 2.0]}]})";
+  Result<PublishedErrors> published = read_published_errors(file);
+  ASSERT_TRUE(published) << published.error().message;
+  TableOptions options;
+  options.published = *published;
+  options.counterparts = {{"one", "A"}, {"two", "B"}};
+  const SweepTables made = tables(options);
+  ASSERT_EQ(made.orderings[0].size(), 1U);
+  EXPECT_EQ(made.orderings[0][0].same, 1U);
+  EXPECT_EQ(made.orderings[0][0].cells, 1U);
+  EXPECT_EQ(made.orderings[0][0].first_better, 0U);
+  EXPECT_THAT(markdown(options), HasSubstr("| 10.5 | 3.00 | X | 2.00 |"));
+  options.counterparts = {{"none", "A"}};
+  Result<SweepScores> scores = read_sweep_scores(folder_);
+  const auto refused = sweep_tables(std::move(*scores), options);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("none: must be an estimator of the sweep"));
+}
+
+TEST_F(SweepTablesTest, RefusesPublishedErrorsOfAnotherLength) {
+  const fs::path file = folder_ / "published.json";
+  std::ofstream(file) << R"({"source": "S", "estimators": ["A", "B"], "rows": [
+    {"cell": {"h": 50}, "position_m": [10.5], "rotation_deg": [1, 2]}]})";
+  const auto published = read_published_errors(file);
+  ASSERT_FALSE(published);
+  EXPECT_THAT(published.error().message, HasSubstr("published.json"));
+  EXPECT_THAT(published.error().message, HasSubstr("position_m"));
+}
+
+TEST_F(SweepTablesTest, LeavesOutRunsThatCannotBeRead) {
+  add({"one", 50, 0, 2.0, 0.1});
+  add({"one", 100, 0, 2.0, 0.1});
+  std::ofstream(folder_ / "runs" / "r1" / "metrics.json") << "{";
+  const SweepTables made = tables();
+  EXPECT_EQ(made.rows.size(), 1U);
+  ASSERT_EQ(made.scores.problems.size(), 1U);
+  EXPECT_THAT(made.scores.problems[0], HasSubstr("metrics.json"));
+}
+
+TEST_F(SweepTablesTest, EscapesTextInEveryFormat) {
+  add({"one", 50, 0, 2.0, 0.1});
+  SweepTables made = tables();
+  made.scores.title = "<script> & _x_ 5%";
+  const TableDocument document = document_from(made, {});
+  EXPECT_THAT(html_from(document), Not(HasSubstr("<script>")));
+  EXPECT_THAT(html_from(document), HasSubstr("&lt;script&gt; &amp;"));
+  EXPECT_THAT(latex_from(document), HasSubstr("\\begin{tabular}{rrrrrrr}"));
+  EXPECT_THAT(latex_from(document), HasSubstr("Height [m] & one position [m]"));
+  EXPECT_THAT(csv_from(made), HasSubstr("50.0,one,paper,1,1,1,"));
+}
+
+TEST(ErrorNumber, HasThreeSignificantDigits) {
+  EXPECT_EQ(error_number(0.0), "0");
+  EXPECT_EQ(error_number(0.012345), "0.0123");
+  EXPECT_EQ(error_number(0.099951), "0.100");
+  EXPECT_EQ(error_number(1.2345), "1.23");
+  EXPECT_EQ(error_number(9.9999), "10.0");
+  EXPECT_EQ(error_number(99.96), "100");
+  EXPECT_EQ(error_number(1234.5), "1234");
+  EXPECT_EQ(error_number(-0.5), "-0.500");
+}
+
+}  // namespace
+}  // namespace overfly::server::experiments
