@@ -65,6 +65,11 @@ ViewMeasures measures_of(const BoardView& view, const Board& board, int width_px
   return measures;
 }
 
+double novelty(const ViewMeasures& a, const ViewMeasures& b) {
+  return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.size - b.size) +
+         std::abs(a.skew - b.skew);
+}
+
 std::vector<CoverageBar> coverage_bars(const std::vector<ViewMeasures>& views) {
   struct Measure {
     const char* name;

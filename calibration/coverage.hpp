@@ -25,6 +25,9 @@ struct ViewMeasures {
                                        int width_px,
                                        int height_px);
 
+/// By how much two views differ: the sum of the differences of their measures.
+[[nodiscard]] double novelty(const ViewMeasures& a, const ViewMeasures& b);
+
 /// One bar: the range of a measure over the views, compared with the range that is enough.
 struct CoverageBar {
   std::string name;  ///< "x", "y", "size", "skew"

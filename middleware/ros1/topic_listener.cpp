@@ -14,6 +14,7 @@
 namespace overfly::ros1 {
 
 /// A message of any type, as it was sent.
+template <std::size_t kMostBytes>
 struct RawMessage {
   std::vector<std::uint8_t> bytes;
   bool too_large = false;
@@ -25,31 +26,31 @@ struct RawMessage {
 namespace ros {
 namespace message_traits {
 
-template <>
-struct IsMessage<overfly::ros1::RawMessage> : TrueType {};
+template <std::size_t kMostBytes>
+struct IsMessage<overfly::ros1::RawMessage<kMostBytes>> : TrueType {};
 
 /// "*" makes roscpp accept every publisher.
-template <>
-struct MD5Sum<overfly::ros1::RawMessage> {
+template <std::size_t kMostBytes>
+struct MD5Sum<overfly::ros1::RawMessage<kMostBytes>> {
   static const char* value() { return "*"; }
-  static const char* value(const overfly::ros1::RawMessage& /*message*/) { return "*"; }
+  static const char* value(const overfly::ros1::RawMessage<kMostBytes>& /*message*/) { return "*"; }
 };
-template <>
-struct DataType<overfly::ros1::RawMessage> {
+template <std::size_t kMostBytes>
+struct DataType<overfly::ros1::RawMessage<kMostBytes>> {
   static const char* value() { return "*"; }
-  static const char* value(const overfly::ros1::RawMessage& /*message*/) { return "*"; }
+  static const char* value(const overfly::ros1::RawMessage<kMostBytes>& /*message*/) { return "*"; }
 };
 
 }  // namespace message_traits
 
 namespace serialization {
 
-template <>
-struct Serializer<overfly::ros1::RawMessage> {
+template <std::size_t kMostBytes>
+struct Serializer<overfly::ros1::RawMessage<kMostBytes>> {
   template <typename Stream>
-  static void read(Stream& stream, overfly::ros1::RawMessage& message) {
+  static void read(Stream& stream, overfly::ros1::RawMessage<kMostBytes>& message) {
     const std::uint32_t size = stream.getLength();
-    message.too_large = size > overfly::ros1::TopicListener::kMostBytes;
+    message.too_large = size > kMostBytes;
     const std::uint8_t* const from = stream.advance(size);
     if (!message.too_large) message.bytes.assign(from, from + size);
   }
@@ -64,7 +65,9 @@ namespace {
 
 /// Messages of one topic that wait for the listener's thread; the oldest are dropped.
 constexpr std::uint32_t kMostWaiting = 20'000;
+constexpr std::uint32_t kMostWaitingImages = 2;
 
+template <std::size_t kMost, std::uint32_t kWaiting>
 class RosTopicListener final : public TopicListener {
  public:
   explicit RosTopicListener(Take take) : take_(std::move(take)), spinner_(1, &queue_) {
@@ -82,11 +85,10 @@ class RosTopicListener final : public TopicListener {
     topics_ = topics;
     std::vector<TopicRegistration> registrations;
     for (const std::string& topic : topics_) {
-      using Event = ros::MessageEvent<const RawMessage>;
       try {
         ros::SubscribeOptions options;
         options.initByFullCallbackType<const Event&>(
-            topic, kMostWaiting, [this, &topic](const Event& event) { pass_on(topic, event); });
+            topic, kWaiting, [this, &topic](const Event& event) { pass_on(topic, event); });
         options.transport_hints = ros::TransportHints().tcpNoDelay();
         subscribers_.push_back(handle_.subscribe(options));
       } catch (const std::exception& failure) {
@@ -114,7 +116,9 @@ class RosTopicListener final : public TopicListener {
   [[nodiscard]] std::uint64_t too_large() const override { return too_large_; }
 
  private:
-  void pass_on(const std::string& topic, const ros::MessageEvent<const RawMessage>& event) {
+  using Event = ros::MessageEvent<const RawMessage<kMost>>;
+
+  void pass_on(const std::string& topic, const Event& event) {
     const auto message = event.getConstMessage();
     if (!message || message->too_large) {
       ++too_large_;
@@ -136,6 +140,15 @@ class RosTopicListener final : public TopicListener {
   std::unique_ptr<MasterWatch> watch_;
 };
 
+template <typename Listener>
+Result<std::unique_ptr<TopicListener>> listening(const Node& node,
+                                                 const TopicListenerOptions& options,
+                                                 TopicListener::Take take) {
+  auto listener = std::make_unique<Listener>(std::move(take));
+  if (Status status = listener->subscribe(node, options.topics); !status) return status.error();
+  return std::unique_ptr<TopicListener>(std::move(listener));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<TopicListener>> TopicListener::open(const TopicListenerOptions& options,
@@ -145,9 +158,12 @@ Result<std::unique_ptr<TopicListener>> TopicListener::open(const TopicListenerOp
   if (!master) return master.error();
   const Result<Node*> node = Node::join(*master, options.node_name, options.patience, cancel);
   if (!node) return node.error();
-  auto listener = std::make_unique<RosTopicListener>(std::move(take));
-  if (Status status = listener->subscribe(**node, options.topics); !status) return status.error();
-  return std::unique_ptr<TopicListener>(std::move(listener));
+  if (options.images) {
+    return listening<RosTopicListener<TopicListener::kMostImageBytes, kMostWaitingImages>>(
+        **node, options, std::move(take));
+  }
+  return listening<RosTopicListener<TopicListener::kMostBytes, kMostWaiting>>(
+      **node, options, std::move(take));
 }
 
 }  // namespace overfly::ros1

@@ -26,6 +26,9 @@ struct TopicListenerOptions {
   std::string master_uri = "http://127.0.0.1:11311";
   std::string node_name = "overfly";
   std::vector<std::string> topics;
+  /// The topics have images: messages of up to kMostImageBytes are passed on, and of those that
+  /// wait only the newest are kept.
+  bool images = false;
   std::chrono::milliseconds patience{10000};  ///< for the master's answer
 };
 
@@ -33,6 +36,7 @@ class TopicListener {
  public:
   /// Larger messages are left out and counted.
   static constexpr std::size_t kMostBytes = std::size_t{1} << 16U;
+  static constexpr std::size_t kMostImageBytes = std::size_t{128} << 20U;
   using Take = std::function<void(const ListenedMessage&)>;
 
   /// Subscribes to topics. Publishers may come and go.
@@ -46,7 +50,7 @@ class TopicListener {
 
   /// One line for error messages: "/mavros/imu/data has 1 publisher, ...".
   [[nodiscard]] virtual std::string publishers() const = 0;
-  /// Messages left out because they are larger than kMostBytes.
+  /// Messages left out because they are too large.
   [[nodiscard]] virtual std::uint64_t too_large() const = 0;
 };
 

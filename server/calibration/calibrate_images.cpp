@@ -4,10 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/virtual/virtual_board.hpp"
-#include "calibration/virtual/virtual_views.hpp"
 #include "core/cancel.hpp"
-#include "sensor/sensor.hpp"
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
 #include "server/files/number_text.hpp"
@@ -89,20 +86,12 @@ class Session {
   CalibrationRecord record_;
 };
 
-Status check_request(const VirtualCalibration& request) {
-  if (Status status = request.camera.validate(); !status) return status.error().in("camera");
-  const auto least = static_cast<int>(calibration::kLeastViews);
-  const auto most = static_cast<int>(calibration::kMostViews);
-  if (request.views < least || request.views > most) {
-    return invalid_request("views = " + std::to_string(request.views) + ": must be in [" +
-                           std::to_string(least) + ", " + std::to_string(most) + "]");
-  }
-  if (request.images.empty()) return {};
+/// Errors: kIo.
+Status make_image_folder(const fs::path& folder) {
   std::error_code failure;
-  fs::create_directories(request.images, failure);
+  if (!folder.empty()) fs::create_directories(folder, failure);
   if (!failure) return {};
-  return Error{ErrorCode::kIo,
-               request.images.string() + ": cannot be created: " + failure.message()};
+  return Error{ErrorCode::kIo, folder.string() + ": cannot be created: " + failure.message()};
 }
 
 }  // namespace
@@ -130,18 +119,14 @@ Result<CalibrationRecord> calibrate_images(const fs::path& folder,
 Result<CalibrationRecord> calibrate_virtual(const VirtualCalibration& request,
                                             const CalibratorOptions& options,
                                             const CalibrationProgress& progress) {
-  if (Status status = check_request(request); !status) return status.error();
+  if (Status status = make_image_folder(request.images); !status) return status.error();
   Result<Session> session = Session::create(options, progress);
   if (!session) return session.error();
-  auto sensor = sensor::Sensor::create(request.sensor, request.camera, request.seed);
-  if (!sensor) return sensor.error().in("sensor");
-  const std::vector<Pose> poses =
-      calibration::virtual_views(request.camera, options.board, request.views, request.seed);
-  if (poses.empty()) return invalid_request("the board fits nowhere into the camera's image");
-  session->expect(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const RadianceImage light = calibration::draw_board(request.camera, options.board, poses[i]);
-    const Image image = (*sensor)->expose(light, static_cast<std::int64_t>(i)).image;
+  auto camera = VirtualCamera::create(request.camera, options.board);
+  if (!camera) return camera.error();
+  session->expect(camera->views());
+  for (std::size_t i = 0; i < camera->views(); ++i) {
+    const Image image = camera->image(i);
     const std::string name = "view" + padded(static_cast<std::int64_t>(i), 4) + ".png";
     if (!request.images.empty()) {
       const Status written = write_png_file(request.images / name, image);
@@ -150,7 +135,7 @@ Result<CalibrationRecord> calibrate_virtual(const VirtualCalibration& request,
     if (Status status = session->take(name, image); !status) return status.error();
   }
   Result<CalibrationRecord> record = std::move(*session).finish("virtual board");
-  if (record) record->truth = request.camera;
+  if (record) record->truth = request.camera.camera;
   return record;
 }
 

@@ -3,16 +3,14 @@
 
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 
 #include "calibration/calibrator.hpp"
-#include "core/camera/camera_model.hpp"
 #include "core/result.hpp"
-#include "sensor/sensor_model.hpp"
 #include "server/calibration/calibration_record.hpp"
+#include "server/calibration/virtual_camera.hpp"
 
 namespace overfly::server {
 
@@ -35,10 +33,7 @@ struct CalibrationProgress {
     const CalibrationProgress& progress = {});
 
 struct VirtualCalibration {
-  CameraModel camera;          ///< the truth
-  sensor::SensorModel sensor;  ///< its defocus and noise; the default leaves the image as drawn
-  int views = 20;              ///< in [4, 1000]
-  std::uint64_t seed = 1;
+  VirtualCameraOptions camera;
   std::filesystem::path images;  ///< folder to write the images to, as PNG; empty = none
 };
 

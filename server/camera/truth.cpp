@@ -6,6 +6,7 @@
 
 #include "flight/live/fly_live.hpp"
 #include "flight/replay/flight_events.hpp"
+#include "flight/replay/late_start.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "flight/ros/ros_truth.hpp"
 #include "server/camera/airframe_flight.hpp"
@@ -81,6 +82,11 @@ Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
     return Error{ErrorCode::kInvalidArgument,
                  "flight.log." + log.log_fields.front() + ": applies to flight logs, and " +
                      log.file.string() + " is a pose file"};
+  }
+  if (scenario.start_ns != 0) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "start_s: must be 0 because " + log.file.string() +
+                     " is a flight log: use flight.log.from_s"};
   }
   if (log.camera_poses) {
     return Error{ErrorCode::kInvalidArgument,
@@ -169,12 +175,11 @@ Result<std::unique_ptr<TruthSource>> open_run_flight(const RunFlight& run,
       std::move(again), events ? std::move(*events) : std::vector<FlightEvent>(), nullptr);
 }
 
-}  // namespace
-
-Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
-                                                  const terrain::World& world,
-                                                  const std::atomic<bool>* cancel,
-                                                  const std::filesystem::path& vehicle_log) {
+/// From the beginning of the flight.
+Result<std::unique_ptr<TruthSource>> create_whole_truth(const Scenario& scenario,
+                                                        const terrain::World& world,
+                                                        const std::atomic<bool>* cancel,
+                                                        const std::filesystem::path& vehicle_log) {
   if (const auto* log = std::get_if<LoggedFlight>(&scenario.flight)) {
     return open_log_flight(scenario, *log, world, cancel);
   }
@@ -194,7 +199,9 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
     return flown;
   }
   if (const auto* mission = std::get_if<MissionFile>(&scenario.flight)) {
-    auto flown = fly_mission_file(*mission, scenario.seed, scenario.duration_s, world, cancel);
+    std::optional<double> until_s = scenario.duration_s;
+    if (until_s) *until_s += s_from_ns(scenario.start_ns);
+    auto flown = fly_mission_file(*mission, scenario.seed, until_s, world, cancel);
     if (!flown) return flown.error().in("flight.mission");
     return flown;
   }
@@ -208,6 +215,17 @@ Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
           : flight::fly_course(course, world.tiles);
   if (!truth) return truth.error().in("flight.course");
   return truth;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TruthSource>> create_truth(const Scenario& scenario,
+                                                  const terrain::World& world,
+                                                  const std::atomic<bool>* cancel,
+                                                  const std::filesystem::path& vehicle_log) {
+  auto flown = create_whole_truth(scenario, world, cancel, vehicle_log);
+  if (!flown || scenario.start_ns == 0) return flown;
+  return flight::started_late(std::move(*flown), scenario.start_ns);
 }
 
 Result<std::unique_ptr<TruthSource>> open_flown_truth(const std::filesystem::path& folder,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/motion/time_order.hpp"
+#include "core/text/natural_order.hpp"
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
 
@@ -12,38 +13,6 @@ namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// Returns the digits at `begin` without leading zeros; moves `begin` past them.
-std::string number_at(const std::string& text, std::size_t& begin) {
-  while (begin < text.size() && text[begin] == '0') ++begin;
-  const std::size_t first = begin;
-  while (begin < text.size() && is_digit(text[begin])) ++begin;
-  return text.substr(first, begin - first);
-}
-
-/// Natural order: 9.png before 10.png; equal numbers ("01", "1") are compared by characters.
-bool before(const fs::path& a_path, const fs::path& b_path) {
-  const std::string a = a_path.filename().string();
-  const std::string b = b_path.filename().string();
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const std::string number_a = number_at(a, i);
-      const std::string number_b = number_at(b, j);
-      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
-      if (number_a != number_b) return number_a < number_b;
-      continue;
-    }
-    if (a[i] != b[j]) return a[i] < b[j];
-    ++i;
-    ++j;
-  }
-  if (i < a.size() || j < b.size()) return i == a.size();
-  return a < b;
-}
 
 }  // namespace
 
@@ -102,7 +71,9 @@ Result<std::vector<fs::path>> images_in(const fs::path& folder) {
   if (failure) {
     return Error{ErrorCode::kNotFound, folder.string() + ": cannot be read: " + failure.message()};
   }
-  std::sort(files.begin(), files.end(), before);
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return before_naturally(a.filename().string(), b.filename().string());
+  });
   return files;
 }
 

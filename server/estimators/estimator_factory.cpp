@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "odometry/baseline/baseline_odometry.hpp"
 #include "odometry/feature/feature_odometry.hpp"
 #include "server/estimators/estimator_doors.hpp"
 #include "vo_bridges/toy/toy_estimators.hpp"
@@ -68,13 +69,31 @@ Port create_toy(const EstimatorSpec& spec, const ToyTruthAt& truth) {
                                 : create_drifting_estimator(truth, *parameters);
 }
 
+Port create_baseline(const EstimatorSpec& spec, const EstimatorSetting& setting) {
+  const auto values = numbers_of(spec.parameters);
+  if (!values) return values.error();
+  if (spec.type == "baseline_homography") {
+    const auto parameters = odometry::baseline::homography_parameters_from(*values);
+    if (!parameters) return parameters.error();
+    return odometry::baseline::create_homography(*parameters);
+  }
+  if (!values->empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "parameters." + values->begin()->first + ": " + spec.type + " has no parameters"};
+  }
+  if (spec.type == "baseline_hold") return odometry::baseline::create_hold();
+  return odometry::baseline::create_dead_reckoning(setting.T_body_camera);
+}
+
 Port create(const EstimatorSpec& spec, const EstimatorSetting& setting, const ToyTruthAt& truth) {
   if (spec.type == "feature") return create_feature(spec, setting);
+  if (is_baseline_estimator(spec.type)) return create_baseline(spec, setting);
   if (is_test_estimator(spec.type)) return create_toy(spec, truth);
   if (is_outside_estimator(spec.type)) return create_outside_estimator(spec, setting);
   return Error{ErrorCode::kInvalidArgument,
                "type = \"" + spec.type +
-                   "\": must be one of feature, perfect, drifting, process, lcm, ros1"};
+                   "\": must be one of feature, baseline_hold, baseline_homography, "
+                   "baseline_dead_reckoning, perfect, drifting, process, lcm, ros1"};
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "core/motion/pose.hpp"
+
 namespace overfly::server {
 
 /// Environment of an estimator, independent of where its frames come from.
@@ -17,6 +19,8 @@ struct EstimatorSetting {
   /// When it becomes true, the estimator stops waiting; null = never.
   const std::atomic<bool>* cancel = nullptr;
   bool sensors = false;  ///< its frames have samples of other sensors
+  /// Mount of the camera.
+  Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
 };
 
 }  // namespace overfly::server

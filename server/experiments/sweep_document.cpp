@@ -1,9 +1,11 @@
 #include "server/experiments/sweep_document.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
+#include "core/time.hpp"
 #include "server/files/json_schema.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -98,7 +100,14 @@ RepeatRule repeats_from(const Json& document) {
   rule.most = repeats.at("most").get<int>();
   if (repeats.contains("half_width")) rule.half_width = repeats.at("half_width").get<double>();
   rule.vary_world = repeats.at("vary_world").get<bool>();
+  rule.vary_start_s = repeats.at("vary_start_s").get<double>();
   return rule;
+}
+
+/// By how much a repeat starts later than the first one, in whole milliseconds.
+double later_s(int repeat, const RepeatRule& rule) {
+  const double turns = static_cast<double>(repeat) * std::numbers::phi;
+  return std::floor((turns - std::floor(turns)) * rule.vary_start_s * 1e3) / 1e3;
 }
 
 Result<Sweep> sweep_from(Json document, const fs::path& folder) {
@@ -161,6 +170,10 @@ Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repe
                         "repeats.vary_world = true: must be false with a world of files"});
       }
       changes.push_back({"world.builtin.seed", world->seed + added});
+    }
+    if (sweep.repeats.vary_start_s > 0.0) {
+      const double start_s = s_from_ns(scenario->start_ns) + later_s(repeat, sweep.repeats);
+      changes.push_back({"start_s", start_s});
     }
     scenario = load_scenario(sweep.scenario_file, changes);
     if (!scenario) return in_cell(scenario.error());

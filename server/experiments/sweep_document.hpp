@@ -37,6 +37,7 @@ struct RepeatRule {
   /// Stop when Wilson's 95 % interval of the success rate has at most this half-width.
   std::optional<double> half_width;
   bool vary_world = false;
+  double vary_start_s = 0.0;  ///< repeats start at instants spread over so many seconds
 };
 
 struct LatinHypercube {
@@ -75,7 +76,9 @@ struct SweepCell {
 /// an unknown axis, and if no cell is left.
 [[nodiscard]] Result<std::vector<SweepCell>> cells_of(const Sweep& sweep);
 
-/// The scenario of one flight: the seed increases by one with each repeat.
+/// The scenario of one flight: the seed increases by one with each repeat. With
+/// repeats.vary_start_s the start of repeat k is later by the fractional part of k times the golden
+/// ratio, times that length: a sequence that is spread evenly however many repeats are flown.
 /// Errors: as load_scenario and check_scenario; kInvalidArgument for repeats.vary_world with
 /// another world than the built-in one. Each names the cell.
 [[nodiscard]] Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repeat);

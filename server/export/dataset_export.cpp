@@ -7,6 +7,7 @@
 
 #include "middleware/lcm/findings.hpp"
 #include "middleware/ros1/findings.hpp"
+#include "server/camera/calibrated_camera.hpp"
 #include "server/export/exported_samples.hpp"
 #include "server/export/frame_sequence.hpp"
 #include "server/files/build_info.hpp"
@@ -111,12 +112,33 @@ bool keeps_going(const ExportOptions& options) {
   return options.cancel == nullptr || !options.cancel->load();
 }
 
+/// As the run's estimators were given it; for a scenario that was never flown the same, made again.
+Result<CameraModel> calibrated_model(const ExportSource& source,
+                                     const CameraSpec& camera,
+                                     const ExportOptions& options) {
+  if (source.run) {
+    const auto recorded = source.run->calibrated.find(camera.name);
+    if (recorded != source.run->calibrated.end()) return recorded->second;
+  }
+  const auto made =
+      calibrate_camera(camera, source.scenario.seed, {options.notice, options.cancel});
+  if (!made) return made.error();
+  return made->model;
+}
+
 Result<DatasetPlan> make_plan(const ExportSource& source,
                               const ExportOptions& options,
                               FrameSequence& frames) {
   DatasetPlan plan;
   plan.folder = options.folder;
   plan.cameras = frames.cameras();
+  for (CameraSpec& camera : plan.cameras) {
+    plan.true_models.push_back(camera.model);
+    if (!camera.calibrated) continue;
+    const Result<CameraModel> given = calibrated_model(source, camera, options);
+    if (!given) return given.error();
+    camera.model = *given;
+  }
   plan.rate = source.scenario.rate;
   plan.last_frame = frames.last_frame();
   plan.epoch_utc_ns = source.epoch_utc_ns;

@@ -33,8 +33,11 @@ struct PlannedEstimate {
 
 /// What a writer needs to know before the first frame.
 struct DatasetPlan {
-  std::filesystem::path folder;     ///< exists and is empty
-  std::vector<CameraSpec> cameras;  ///< cameras to write, in this order
+  std::filesystem::path folder;  ///< exists and is empty
+  /// Cameras to write, in this order. Their models are those that estimators are given: of a camera
+  /// with `calibrated` the calibration.
+  std::vector<CameraSpec> cameras;
+  std::vector<CameraModel> true_models;  ///< of these cameras
   FrameRate rate;
   std::int64_t last_frame = 0;    ///< the highest index that may occur
   std::int64_t epoch_utc_ns = 0;  ///< Unix time of t = 0

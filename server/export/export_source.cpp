@@ -59,12 +59,17 @@ Result<ExportSource> open_run(const fs::path& folder) {
   Result<RunRecords> records = read_run_records(folder, *manifest);
   if (!records) return records.error();
   std::vector<PlannedEstimate> estimates = estimates_of(folder, *records);
+  std::map<std::string, CameraModel> calibrated;
+  for (const RunManifest::Camera& camera : manifest->values.cameras) {
+    if (camera.calibrated) calibrated[camera.name] = camera.calibrated->model;
+  }
   ExportSource source{std::move(*scenario),
                       RecordedRun{folder,
                                   std::move(records->cameras[kMainCamera].frames),
                                   digests_of(manifest->values),
                                   manifest->values.flight.value_or(RunManifest::Flight{}),
-                                  std::move(estimates)},
+                                  std::move(estimates),
+                                  std::move(calibrated)},
                       manifest->values.epoch_utc_ns.value_or(kEpochUtcNs)};
   if (source.run->frames.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": the run recorded no frames"};

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct RecordedRun {
   std::vector<std::pair<std::string, std::string>> world_digests;  ///< file, digest
   RunManifest::Flight flight;                                      ///< as in the manifest
   std::vector<PlannedEstimate> estimates;                          ///< of all estimators
+  /// Intrinsics that the estimators were given, by camera, where they are not the true ones.
+  std::map<std::string, CameraModel> calibrated;
 };
 
 struct ExportSource {

@@ -7,9 +7,9 @@
 
 #include "server/export/dataset_writer.hpp"
 #include "server/export/mcap/mcap_file.hpp"
-#include "server/export/mcap/ros2_message.hpp"
-#include "server/export/mcap/ros2_samples.hpp"
 #include "server/export/ros_topics.hpp"
+#include "server/ros2/ros2_message.hpp"
+#include "server/ros2/ros2_samples.hpp"
 
 namespace overfly::server {
 namespace {
@@ -82,7 +82,8 @@ class McapWriter final : public DatasetWriter {
   Status add_samples(const MadeFrame& frame) {
     sampled_ = sampled_ || !frame.sensors.empty();
     if (!sampled_) return {};
-    for (const RosMount& mount : ros_mounts(plan_.cameras.front(), names_.front().frame)) {
+    for (const RosMount& mount :
+         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame)) {
       const Ros2Header header{plan_.epoch_utc_ns + frame.t_ns, mount.parent_frame};
       Status status =
           write("/tf", header, ros2_transform(header, mount.child_frame, mount.T_parent_child));

@@ -1,57 +1,26 @@
 #include "server/export/ros_topics.hpp"
 
-#include <set>
 #include <utility>
 
 namespace overfly::server {
-namespace {
-
-/// Letters, digits and '_'; unlike the names so far.
-std::string topic_part(std::string name, std::set<std::string>& taken) {
-  for (char& c : name) {
-    const bool word = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (!word) c = '_';
-  }
-  const std::string wanted = name;
-  for (int i = 2; !taken.insert(name).second; ++i) name = wanted + "_" + std::to_string(i);
-  return name;
-}
-
-}  // namespace
 
 std::vector<RosCameraTopics> ros_camera_topics(const std::vector<CameraSpec>& cameras) {
-  std::vector<RosCameraTopics> names;
-  std::set<std::string> taken;
-  for (const CameraSpec& camera : cameras) {
-    const std::string prefix = topic_part(taken.empty() ? "camera" : camera.name, taken);
-    names.push_back({"/" + prefix + "/image_raw",
-                     "/" + prefix + "/camera_info",
-                     "/" + prefix + "/truth",
-                     prefix + "_optical_frame"});
+  std::vector<std::string> names;
+  for (const CameraSpec& camera : cameras) names.push_back(camera.name);
+  std::vector<RosCameraTopics> topics;
+  for (const std::string& part : camera_topic_parts(names)) {
+    const std::string prefix = "/" + part;
+    topics.push_back(
+        {prefix + "/image_raw", prefix + "/camera_info", prefix + "/truth", optical_frame(part)});
   }
-  return names;
-}
-
-std::vector<RosMount> ros_mounts(const CameraSpec& first_camera, const std::string& camera_frame) {
-  // Forward-right-down and forward-left-up are half a turn about x apart.
-  const Eigen::Quaterniond R_body_base(0.0, 1.0, 0.0, 0.0);
-  const Pose T_camera_body = first_camera.T_body_camera.inverse();
-  // Columns are the range sensor's axes in base_link: x down, y left, z forward.
-  Eigen::Matrix3d R_base_range;
-  R_base_range << 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0;
-  return {
-      {ros1::kBodyFrame, camera_frame, T_camera_body * Pose{R_body_base, Eigen::Vector3d::Zero()}},
-      {ros1::kRangeFrame,
-       ros1::kBodyFrame,
-       Pose{Eigen::Quaterniond(R_base_range), Eigen::Vector3d::Zero()}}};
+  return topics;
 }
 
 RosEstimates::RosEstimates(const std::vector<PlannedEstimate>& estimates)
     : estimates_(estimates), next_(estimates.size(), 0) {
-  std::set<std::string> taken;
-  for (const PlannedEstimate& estimate : estimates) {
-    names_.push_back(topic_part(estimate.track.name, taken));
-  }
+  std::vector<std::string> names;
+  for (const PlannedEstimate& estimate : estimates) names.push_back(estimate.track.name);
+  names_ = topic_parts(names);
 }
 
 std::vector<std::string> RosEstimates::topics() const {

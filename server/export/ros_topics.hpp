@@ -9,6 +9,7 @@
 #include "core/motion/pose.hpp"
 #include "middleware/ros1/frame_names.hpp"
 #include "server/export/dataset_writer.hpp"
+#include "server/ros2/flight_names.hpp"
 #include "server/scenario/camera_spec.hpp"
 
 namespace overfly::server {
@@ -18,7 +19,6 @@ struct RosCameraTopics {
   std::string image, info, truth;
   std::string frame;
 };
-/// The first camera is "/camera", as nodes expect it; the others are called by their names.
 [[nodiscard]] std::vector<RosCameraTopics> ros_camera_topics(
     const std::vector<CameraSpec>& cameras);
 
@@ -29,18 +29,6 @@ struct RosEstimate {
   std::int64_t t_ns = 0;
   Pose pose;
 };
-
-/// A constant transform for /tf.
-struct RosMount {
-  const char* child_frame = nullptr;
-  std::string parent_frame;
-  Pose T_parent_child;
-};
-/// Where the sensors of the samples are: the body (base_link) as seen from the first camera, whose
-/// pose is on /tf, and the range sensor (range_link). They connect the frames of middleware's
-/// frame_names.hpp to one tree. The mount is the nominal one, without vibration.
-[[nodiscard]] std::vector<RosMount> ros_mounts(const CameraSpec& first_camera,
-                                               const std::string& camera_frame);
 
 /// The estimates of a run, taken frame by frame.
 class RosEstimates {

@@ -54,7 +54,8 @@ class RosbagWriter final : public DatasetWriter {
   Status add_samples(const MadeFrame& frame) {
     sampled_ = sampled_ || !frame.sensors.empty();
     if (!sampled_) return {};
-    for (const RosMount& mount : ros_mounts(plan_.cameras.front(), names_.front().frame)) {
+    for (const RosMount& mount :
+         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame)) {
       Status status = bag_->add_transform(mount.parent_frame,
                                           mount.child_frame,
                                           plan_.epoch_utc_ns + frame.t_ns,

@@ -24,6 +24,7 @@ class TumMonoWriter final : public DatasetWriter {
   explicit TumMonoWriter(const DatasetPlan& plan)
       : folder_(plan.folder),
         camera_(plan.cameras.front()),
+        true_model_(plan.true_models.front()),
         digits_(std::max(5, static_cast<int>(std::to_string(plan.last_frame).size()))) {}
 
   Status begin() {
@@ -34,7 +35,7 @@ class TumMonoWriter final : public DatasetWriter {
       return status;
     }
     return write_png_file(folder_ / "vignette.png",
-                          sensor::vignette_map(camera_.sensor, camera_.model));
+                          sensor::vignette_map(camera_.sensor, true_model_));
   }
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
@@ -68,6 +69,7 @@ class TumMonoWriter final : public DatasetWriter {
 
   std::filesystem::path folder_;
   CameraSpec camera_;
+  CameraModel true_model_;
   int digits_;
   std::string times_;
   std::vector<StampedPose> truth_;

@@ -4,14 +4,17 @@
 #include <string>
 
 #include "server/net/http/error_response.hpp"
+#include "server/net/websocket_services.hpp"
 
 namespace overfly::net {
 namespace {
 
 namespace http = boost::beast::http;
 
+/// @param any_origin  pages of other sites may send it
 std::optional<HttpResponse> forbidden(const AllowedHosts& allowed,
                                       const std::string& local,
+                                      bool any_origin,
                                       const HttpRequest& request) {
   const std::string host = request.header("host");
   const auto authority = parse_authority(host, 0);
@@ -26,7 +29,7 @@ std::optional<HttpResponse> forbidden(const AllowedHosts& allowed,
             ": is not a name of this server (overfly serve --allow-host NAME adds one)");
   }
   const std::string origin = request.header("origin");
-  if (!allowed.allows_origin(origin, host, local)) {
+  if (!any_origin && !allowed.allows_origin(origin, host, local)) {
     return error_response(403, "forbidden", "origin " + origin + ": is a page of another site");
   }
   return std::nullopt;
@@ -53,7 +56,10 @@ HttpRequest plain_request(const http::request<http::string_body>& message) {
 std::optional<HttpResponse> not_admitted(const ServerContext& context,
                                          const boost::asio::ip::address& local,
                                          HttpRequest* request) {
-  if (auto response = forbidden(context.allowed_hosts, local.to_string(), *request)) {
+  // Viewers that are pages of other sites connect with an address that their user gave them.
+  const bool any_origin =
+      is_foxglove_target(request->target) && context.token_gate.is_shown_in_query(*request);
+  if (auto response = forbidden(context.allowed_hosts, local.to_string(), any_origin, *request)) {
     return response;
   }
   return context.token_gate.check(request);

@@ -17,6 +17,7 @@
 #include "server/net/http/error_response.hpp"
 #include "server/net/http_answers.hpp"
 #include "server/net/upload_receiver.hpp"
+#include "server/net/websocket_services.hpp"
 #include "server/net/websocket_session.hpp"
 
 namespace overfly::net {
@@ -28,7 +29,6 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using beast::error_code;
 
-constexpr const char* kStreamPath = "/api/v1/stream";
 constexpr const char* kApiPrefix = "/api/";
 /// Size of the buffer for pipelined requests.
 constexpr std::size_t kReadBufferBytes = std::size_t{128} << 10U;
@@ -39,8 +39,6 @@ constexpr std::chrono::seconds kAnswerLimit{120};
 constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
 constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
 constexpr std::chrono::seconds kDrainLimit{2};
-
-std::string path_of(const std::string& target) { return target.substr(0, target.find('?')); }
 
 HttpResponse too_many_viewers(std::size_t most) {
   return error_response(
@@ -153,7 +151,7 @@ void HttpSession::on_header(const error_code& error) {
     write(std::move(*response));
     return;
   }
-  if (beast::websocket::is_upgrade(message) && path_of(request_.target) == kStreamPath) {
+  if (beast::websocket::is_upgrade(message) && is_websocket_target(request_.target)) {
     upgrade();
     return;
   }
@@ -192,13 +190,19 @@ void HttpSession::receive_body() {
 }
 
 void HttpSession::upgrade() {
+  const http::request<http::string_body> message = parser_->get();
+  const auto service = websocket_service(message, request_.target, context_);
+  if (!service) {
+    keep_alive_ = false;
+    write(error_response(service.error()));
+    return;
+  }
   if (!place_->enter(ConnectionPhase::kViewer)) {
     keep_alive_ = false;
     write(too_many_viewers(context_->options.limits.connections.max_viewers));
     return;
   }
-  const http::request<http::string_body> message = parser_->get();
-  serve_websocket(stream_.release_socket(), message, context_, std::move(place_));
+  serve_websocket(stream_.release_socket(), message, context_, std::move(place_), *service);
 }
 
 void HttpSession::read_body() {
@@ -238,10 +242,9 @@ void HttpSession::refuse(const error_code& error) {
 }
 
 void HttpSession::dispatch() {
-  const std::string path = path_of(request_.target);
-  if (path == kStreamPath) {
+  if (is_websocket_target(request_.target)) {
     write(stream_without_upgrade());
-  } else if (path.starts_with(kApiPrefix)) {
+  } else if (request_.target.starts_with(kApiPrefix)) {
     ask_router();
   } else {
     write(context_->files.serve(request_));
@@ -252,7 +255,7 @@ void HttpSession::dispatch() {
 HttpResponse HttpSession::stream_without_upgrade() const {
   const std::size_t most = context_->options.limits.connections.max_viewers;
   if (context_->connections.count(ConnectionPhase::kViewer) >= most) return too_many_viewers(most);
-  return error_response(426, "upgrade_required", "the stream is a WebSocket: request an upgrade");
+  return error_response(426, "upgrade_required", "this is a WebSocket: request an upgrade");
 }
 
 void HttpSession::ask_router() {

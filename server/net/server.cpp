@@ -84,6 +84,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_progress_routes(&context->router, progress);
   add_log_routes(&context->router, {&context->logs, readers, progress});
   add_trajectory_routes(&context->router, &context->trajectories, readers);
+  add_calibration_session_routes(&context->router, &context->calibrations);
+  add_calibration_routes(&context->router, &context->calibrations);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {
     boost::asio::post(workers->loop(), std::move(work));
   };

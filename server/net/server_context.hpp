@@ -10,15 +10,18 @@
 #include <thread>
 
 #include "core/barrier.hpp"
+#include "server/calibration/session/calibration_desk.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/net/http/allowed_hosts.hpp"
 #include "server/net/http/rest_router.hpp"
 #include "server/net/http/static_files.hpp"
 #include "server/net/http/token_gate.hpp"
 #include "server/net/reading_threads.hpp"
+#include "server/net/rest/rest_api.hpp"
 #include "server/net/server_options.hpp"
 #include "server/net/session_registry.hpp"
 #include "server/runs/run_manager.hpp"
+#include "server/timing/thread_priority.hpp"
 #include "server/trajectories/trajectory_library.hpp"
 #include "server/views/view_service.hpp"
 
@@ -62,7 +65,21 @@ struct ServerContext {
             server_options.uploads_folder,
             server_options.limits.uploads),
         trajectories(logs, [this](const std::string& id) { return runs.folder(id); }),
+        calibrations(calibration_options()),
         connections(server_options.limits.connections) {}
+
+  [[nodiscard]] server::DeskOptions calibration_options() {
+    server::DeskOptions desk;
+    desk.folders = [this] { return logs.folders(); };
+    desk.scenario_camera = [this](const std::string& scenario, const std::string& camera) {
+      return scenario_camera(runs, scenario, camera);
+    };
+    desk.cameras = options.cameras;
+    const bool keeps = !options.uploads_folder.empty() && options.limits.uploads.quota_bytes > 0;
+    if (keeps) desk.store = options.uploads_folder / "calibrations";
+    desk.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
+    return desk;
+  }
 
   /// Never throws, since it is called from exception handlers.
   void log(const char* level, const std::string& text) const noexcept {
@@ -101,6 +118,7 @@ struct ServerContext {
   std::function<void(std::function<void()>)> offload;
   server::LogLibrary logs;
   server::TrajectoryLibrary trajectories;
+  server::CalibrationDesk calibrations;
   /// Reads flight logs, which can take minutes, without keeping other requests waiting.
   ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
   std::atomic<std::uint64_t> next_client{1};  ///< next client number for the view service

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/imagery/live/live_address.hpp"
 #include "server/logs/log_uploads.hpp"
 #include "server/net/connection_table.hpp"
 
@@ -41,6 +42,8 @@ struct ServerOptions {
   /// Where uploaded flight logs are kept; empty = no uploads. Scenarios may name its files only if
   /// it is one of the run manager's data folders.
   std::filesystem::path uploads_folder;
+  /// Live cameras that calibrations may open.
+  std::vector<server::LiveAddress> cameras;
   ServerLimits limits;
   /// Called with each log line: (level, text).
   std::function<void(const std::string&, const std::string&)> log;

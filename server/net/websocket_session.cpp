@@ -1,5 +1,6 @@
 #include "server/net/websocket_session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
@@ -12,8 +13,6 @@
 #include <utility>
 
 #include "core/barrier.hpp"
-#include "server/net/http/json_text.hpp"
-#include "server/net/stream/viewer.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
 
@@ -32,6 +31,17 @@ constexpr std::uint16_t kTooSlow = 4000;
 constexpr std::chrono::seconds kCloseGrace{5};
 constexpr std::chrono::seconds kFarewellGrace{1};
 
+/// The newest run that flies, or else the newest one. @param runs  newest first
+std::optional<std::string> newest_run(const server::RunList& runs) {
+  const auto flies = std::find_if(runs.begin(), runs.end(), [](const auto& run) {
+    return run->status == server::RunStatus::kRunning;
+  });
+  if (flies != runs.end()) return (*flies)->id;
+  const auto flown =
+      std::find_if(runs.begin(), runs.end(), [](const auto& run) { return run->frames > 0; });
+  return flown == runs.end() ? std::nullopt : std::optional((*flown)->id);
+}
+
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
@@ -40,13 +50,13 @@ std::int64_t monotonic_ns() {
 
 /// One message in the send queue.
 struct Outgoing {
-  std::string text;  ///< a text message, unless there is a picture
-  std::array<std::uint8_t, kPictureHeaderBytes> header{};
-  std::shared_ptr<const std::vector<std::uint8_t>> payload;
-  PictureTicket ticket;
+  std::string text;                ///< a text message, unless there are bytes
+  std::vector<std::uint8_t> head;  ///< of a binary message
+  std::shared_ptr<const std::vector<std::uint8_t>> payload;  ///< follows the head; may be null
+  std::optional<PictureTicket> ticket;                       ///< of a picture
 
   [[nodiscard]] std::size_t bytes() const {
-    return payload ? header.size() + payload->size() : text.size();
+    return text.size() + head.size() + (payload ? payload->size() : 0);
   }
 };
 
@@ -57,18 +67,20 @@ class WebSocketSession final : public ViewerPort,
  public:
   WebSocketSession(tcp::socket socket,
                    std::shared_ptr<ServerContext> context,
-                   std::unique_ptr<ConnectionTable::Place> place)
+                   std::unique_ptr<ConnectionTable::Place> place,
+                   const WebSocketService& service)
       : context_(std::move(context)),
         place_(std::move(place)),
         ws_(std::move(socket)),
         timer_(ws_.get_executor()),
-        viewer_(*this),
-        client_(context_->next_client++) {}
+        protocol_(service.protocol),
+        client_(service.make_client(*this)),
+        number_(context_->next_client++) {}
   ~WebSocketSession() override {
     (void)contained(
         [this] {
           if (registered_) context_->sessions.remove(*registered_);
-          context_->views.forget(client_);
+          context_->views.forget(number_);
         },
         [this](const char* what) { report(what); });
   }
@@ -76,11 +88,14 @@ class WebSocketSession final : public ViewerPort,
   void run(const http::request<http::string_body>& upgrade);
 
   void send_text(std::string text) override;
+  void send_binary(std::vector<std::uint8_t> message) override;
   void send_picture(const PictureTicket& ticket,
-                    const PictureHeader& header,
+                    std::vector<std::uint8_t> head,
                     std::shared_ptr<const std::vector<std::uint8_t>> payload) override;
   void draw(const PictureTicket& ticket, const server::PictureRequest& request) override;
   void open_run(const std::string& run_id) override;
+  void open_newest_run() override;
+  void work(std::function<std::function<void()>()> slow) override;
   [[nodiscard]] std::optional<double> picture_limit_hz() const override {
     return context_->runs.picture_rate().limit_hz();
   }
@@ -90,7 +105,10 @@ class WebSocketSession final : public ViewerPort,
   void greet();
   void read();
   void on_read(const error_code& error);
+  void take(std::int64_t now_ns);
+  void open(std::function<Timeline(server::RunManager&)> opened);
   void run_opened(Timeline timeline);
+  void finish_work(const std::function<void()>& then);
   void picture_ready(const PictureTicket& ticket, const Result<server::Picture>& picture);
   void enqueue(Outgoing message);
   void write();
@@ -131,8 +149,9 @@ class WebSocketSession final : public ViewerPort,
   std::shared_ptr<WebSocketSession>
       unread_;  ///< keeps the session alive while it does not read because the viewer is full
   asio::steady_timer timer_;
-  Viewer viewer_;
-  std::uint64_t client_;
+  std::string protocol_;
+  std::unique_ptr<StreamClient> client_;
+  std::uint64_t number_;  ///< for the view service
 };
 
 void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
@@ -149,6 +168,11 @@ void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
   ws_.set_option(timeout);
   ws_.read_message_max(limits.max_message_bytes);
   ws_.auto_fragment(false);
+  if (!protocol_.empty()) {
+    ws_.set_option(websocket::stream_base::decorator([this](websocket::response_type& response) {
+      response.set(http::field::sec_websocket_protocol, protocol_);
+    }));
+  }
   ws_.async_accept(upgrade, [self = shared_from_this()](const error_code& error) {
     if (!error) self->attempt([&] { self->greet(); });
   });
@@ -160,7 +184,7 @@ void WebSocketSession::greet() {
       if (const auto session = weak.lock()) session->attempt([&] { session->go_away(); });
     });
   });
-  viewer_.greet("c" + std::to_string(client_));
+  client_->greet("c" + std::to_string(number_));
   read();
 }
 
@@ -175,34 +199,53 @@ void WebSocketSession::on_read(const error_code& error) {
     end();
     return;
   }
-  if (!closing_) {
-    // A binary message is not JSON: it is answered as one that could not be parsed.
-    viewer_.handle(ws_.got_text() ? beast::buffers_to_string(read_buffer_.data()) : std::string(),
-                   monotonic_ns());
-    schedule();
-  }
+  if (!closing_) take(monotonic_ns());
   read_buffer_.consume(read_buffer_.size());
-  if (viewer_.full()) {
+  if (client_->full()) {
     unread_ = shared_from_this();
   } else {
     read();
   }
 }
 
+void WebSocketSession::take(std::int64_t now_ns) {
+  const asio::const_buffer bytes = read_buffer_.data();
+  if (ws_.got_text()) {
+    client_->take_text(std::string(static_cast<const char*>(bytes.data()), bytes.size()), now_ns);
+  } else {
+    client_->take_binary({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, now_ns);
+  }
+  schedule();
+}
+
 void WebSocketSession::open_run(const std::string& run_id) {
-  context_->offload([weak = weak_from_this(), context = context_, run_id] {
+  open([run_id](server::RunManager& runs) { return runs.timeline(run_id); });
+}
+
+void WebSocketSession::open_newest_run() {
+  open([](server::RunManager& runs) -> Timeline {
+    const auto run_id = newest_run(runs.runs());
+    if (!run_id)
+      return Error{ErrorCode::kNotFound, "no run was flown yet: start one, connect again"};
+    return runs.timeline(*run_id);
+  });
+}
+
+void WebSocketSession::open(std::function<Timeline(server::RunManager&)> opened) {
+  context_->offload([weak = weak_from_this(), context = context_, opened = std::move(opened)] {
     Timeline timeline = Error{ErrorCode::kInternal, {}};
-    (void)contained([&] { timeline = context->runs.timeline(run_id); },
-                    [&](const char* what) {
-                      timeline = Error{ErrorCode::kInternal, "run " + run_id + ": " + what};
-                      context->log("error", timeline.error().message);
-                    });
+    (void)contained(
+        [&] { timeline = opened(context->runs); },
+        [&](const char* what) {
+          timeline = Error{ErrorCode::kInternal, std::string("a run cannot be opened: ") + what};
+          context->log("error", timeline.error().message);
+        });
     context->deliver([&] {
       const auto self = weak.lock();
       if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, opened = timeline]() mutable {
+      asio::post(self->ws_.get_executor(), [weak, timeline]() mutable {
         const auto session = weak.lock();
-        if (session) session->attempt([&] { session->run_opened(std::move(opened)); });
+        if (session) session->attempt([&] { session->run_opened(std::move(timeline)); });
       });
     });
   });
@@ -210,12 +253,37 @@ void WebSocketSession::open_run(const std::string& run_id) {
 
 void WebSocketSession::run_opened(Timeline timeline) {
   if (closing_ || ended_) return;
-  viewer_.run_opened(std::move(timeline), monotonic_ns());
+  client_->run_opened(std::move(timeline), monotonic_ns());
   schedule();
-  if (unread_ && !viewer_.full()) {
+  if (unread_ && !client_->full()) {
     unread_.reset();
     read();
   }
+}
+
+void WebSocketSession::work(std::function<std::function<void()>()> slow) {
+  context_->offload([weak = weak_from_this(), context = context_, asked = std::move(slow)] {
+    std::function<void()> then;
+    (void)contained([&] { then = asked(); },
+                    [&](const char* what) {
+                      context->log("error", std::string("work for a viewer failed: ") + what);
+                    });
+    if (!then) return;
+    context->deliver([&] {
+      const auto self = weak.lock();
+      if (!self) return;
+      asio::post(self->ws_.get_executor(), [weak, then] {
+        const auto session = weak.lock();
+        if (session) session->attempt([&] { session->finish_work(then); });
+      });
+    });
+  });
+}
+
+void WebSocketSession::finish_work(const std::function<void()>& then) {
+  if (closing_ || ended_) return;
+  then();
+  schedule();
 }
 
 void WebSocketSession::send_text(std::string text) {
@@ -224,11 +292,17 @@ void WebSocketSession::send_text(std::string text) {
   enqueue(std::move(message));
 }
 
+void WebSocketSession::send_binary(std::vector<std::uint8_t> message) {
+  Outgoing outgoing;
+  outgoing.head = std::move(message);
+  enqueue(std::move(outgoing));
+}
+
 void WebSocketSession::send_picture(const PictureTicket& ticket,
-                                    const PictureHeader& header,
+                                    std::vector<std::uint8_t> head,
                                     std::shared_ptr<const std::vector<std::uint8_t>> payload) {
   Outgoing message;
-  message.header = encode_picture_header(header);
+  message.head = std::move(head);
   message.payload = std::move(payload);
   message.ticket = ticket;
   enqueue(std::move(message));
@@ -246,13 +320,13 @@ void WebSocketSession::draw(const PictureTicket& ticket, const server::PictureRe
       });
     });
   };
-  context_->views.request(client_, static_cast<int>(ticket.stream_id), request, done);
+  context_->views.request(number_, static_cast<int>(ticket.stream_id), request, done);
 }
 
 void WebSocketSession::picture_ready(const PictureTicket& ticket,
                                      const Result<server::Picture>& picture) {
   if (closing_) return;
-  viewer_.picture_ready(ticket, picture, monotonic_ns());
+  client_->picture_ready(ticket, picture, monotonic_ns());
   schedule();
 }
 
@@ -271,10 +345,11 @@ void WebSocketSession::write() {
   const auto written = [self = shared_from_this()](const error_code& error, std::size_t) {
     self->attempt([&] { self->on_written(error); });
   };
-  if (message.payload) {
+  if (!message.head.empty()) {
     ws_.binary(true);
-    const std::array<asio::const_buffer, 2> parts = {asio::buffer(message.header),
-                                                     asio::buffer(*message.payload)};
+    const std::array<asio::const_buffer, 2> parts = {
+        asio::buffer(message.head),
+        message.payload ? asio::buffer(*message.payload) : asio::const_buffer()};
     ws_.async_write(parts, written);
   } else {
     ws_.text(true);
@@ -296,14 +371,14 @@ void WebSocketSession::on_written(const error_code& error) {
     return;
   }
   if (!queue_.empty()) write();
-  if (message.payload) {
-    viewer_.picture_sent(message.ticket, monotonic_ns());
+  if (message.ticket) {
+    client_->picture_sent(*message.ticket, monotonic_ns());
     schedule();
   }
 }
 
 void WebSocketSession::schedule() {
-  const auto after_ns = viewer_.tick_after_ns();
+  const auto after_ns = client_->tick_after_ns();
   if (!after_ns || closing_ || ended_) return;
   timer_.expires_after(std::chrono::nanoseconds(*after_ns));
   timer_.async_wait([weak = weak_from_this()](const error_code& error) {
@@ -313,7 +388,7 @@ void WebSocketSession::schedule() {
 
 void WebSocketSession::on_timer(const error_code& error) {
   if (error || closing_ || ended_) return;
-  viewer_.tick(monotonic_ns());
+  client_->tick(monotonic_ns());
   check_pace();
   schedule();
 }
@@ -344,7 +419,7 @@ void WebSocketSession::close_with(const websocket::close_reason& reason,
   closing_ = true;
   reason_ = reason;
   if (queue_.size() > 1) queue_.erase(queue_.begin() + 1, queue_.end());
-  context_->views.forget(client_);
+  context_->views.forget(number_);
   timer_.expires_after(grace);
   timer_.async_wait([weak = weak_from_this()](const error_code& error) {
     const auto self = weak.lock();
@@ -364,7 +439,7 @@ void WebSocketSession::end() {
   ended_ = true;
   unread_.reset();
   timer_.cancel();
-  context_->views.forget(client_);
+  context_->views.forget(number_);
   beast::get_lowest_layer(ws_).close();
 }
 
@@ -373,8 +448,10 @@ void WebSocketSession::end() {
 void serve_websocket(tcp::socket socket,
                      const http::request<http::string_body>& upgrade,
                      std::shared_ptr<ServerContext> context,
-                     std::unique_ptr<ConnectionTable::Place> place) {
-  std::make_shared<WebSocketSession>(std::move(socket), std::move(context), std::move(place))
+                     std::unique_ptr<ConnectionTable::Place> place,
+                     const WebSocketService& service) {
+  std::make_shared<WebSocketSession>(
+      std::move(socket), std::move(context), std::move(place), service)
       ->run(upgrade);
 }
 

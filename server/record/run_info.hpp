@@ -42,7 +42,9 @@ struct RunInfo {
   std::string flight;                          ///< what is flown, for people; empty = not known yet
   std::uint64_t seed = 0;
   std::string attribution;
-  std::optional<Geodetic> origin;    ///< of the world frame; empty until the world is open
+  std::optional<Geodetic> origin;  ///< of the world frame; empty until the world is open
+  /// Unix time of t = 0; empty until it is known, before the first frame.
+  std::optional<std::int64_t> epoch_utc_ns;
   std::vector<std::string> cameras;  ///< names, the main camera first
   /// The imagery, not the camera, limits the result: the median is below 0.5 texels per pixel.
   bool texture_limited = false;

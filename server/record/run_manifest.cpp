@@ -57,6 +57,7 @@ Json camera_json(const Manifest::Camera& camera) {
   value["color"] = camera.rgb ? "rgb" : "grey";
   value["bits"] = camera.bits;
   value["sensor"] = camera.sensor.has_value();
+  if (camera.calibrated) value["calibrated"] = json_from(*camera.calibrated, camera.model);
   if (!camera.sensor) return value;
   value["readout_ns"] = camera.sensor->readout_ns;
   value["gain_dn_per_e"] = camera.sensor->gain_dn_per_e;
@@ -136,6 +137,7 @@ void put_run_info(const RunInfo& info, RunManifest& manifest) {
 
 void put_description(const RunManifest& manifest, RunInfo* info) {
   info->seed = manifest.seed;
+  info->epoch_utc_ns = manifest.epoch_utc_ns;
   if (manifest.flight) info->flight = manifest.flight->description;
   if (!manifest.world) return;
   info->attribution = manifest.world->attribution;

@@ -14,6 +14,7 @@
 #include "core/motion/pose.hpp"
 #include "core/result.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/calibrated_intrinsics.hpp"
 #include "server/record/run_info.hpp"
 
 namespace overfly::server {
@@ -60,6 +61,8 @@ struct RunManifest {
     bool rgb = false;
     int bits = 8;
     std::optional<Sensor> sensor;
+    /// What estimators were given in place of `model`; empty: they were given the true model.
+    std::optional<CalibratedIntrinsics> calibrated;
   };
   using Parameters = std::map<std::string, std::string>;
   struct Estimator {

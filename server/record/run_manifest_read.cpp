@@ -126,6 +126,9 @@ Manifest::Camera read_camera(const FileField& field) {
   camera.T_body_camera = read_mount(field.at("T_body_camera"));
   camera.rgb = optional_text(field, "color") == "rgb";
   if (const auto bits = field.find("bits")) camera.bits = static_cast<int>(bits->integer(1, 64));
+  if (const auto calibrated = field.find("calibrated")) {
+    camera.calibrated = read_calibrated_intrinsics(*calibrated);
+  }
   if (!optional_flag(field, "sensor")) return camera;
   Manifest::Sensor& sensor = camera.sensor.emplace();
   if (const auto readout = field.find("readout_ns")) sensor.readout_ns = readout->integer();

@@ -182,6 +182,11 @@ Table origin_table(const ReportRun& run) {
         {{"renderer"}, {manifest.renderer->backend + ", " + manifest.renderer->device}});
   }
   if (manifest.world) add_world_rows(*manifest.world, origin.rows);
+  for (const RunManifest::Camera& camera : manifest.cameras) {
+    if (!camera.calibrated) continue;
+    origin.rows.push_back({{"camera " + camera.name + ", as calibrated"},
+                           {calibrated_words(*camera.calibrated, camera.model)}});
+  }
   for (const RunManifest::Estimator& estimator : manifest.estimators) {
     origin.rows.push_back({{"estimator " + estimator.name},
                            {estimator.type + ", camera " + estimator.camera +

@@ -44,16 +44,17 @@ FrameRow row_from(const MadeFrame& made, const CameraShot& shot, const CameraSpe
 
 VoFrame vo_frame_from(const MadeFrame& made,
                       const CameraShot& shot,
-                      const CameraSpec& camera,
+                      const std::string& camera,
+                      const CameraModel& model,
                       std::shared_ptr<const Image> grey) {
   VoFrame frame;
-  frame.camera_id = camera.name;
+  frame.camera_id = camera;
   frame.index = made.frame;
   frame.t_ns = shot.stamp_ns;
   frame.exposure_ns = shot.setting.exposure_ns;
   frame.image = std::move(grey);
-  frame.intrinsics = camera.model.pinhole();
-  frame.distortion = camera.model.distortion();
+  frame.intrinsics = model.pinhole();
+  frame.distortion = model.distortion();
   return frame;
 }
 
@@ -131,7 +132,10 @@ Status FlightRun::describe_end() {
 
 Status FlightRun::prepare_and_fly() {
   using Step = Status (FlightRun::*)();
-  const Step steps[] = {&FlightRun::open_maker, &FlightRun::open_estimators, &FlightRun::describe};
+  const Step steps[] = {&FlightRun::calibrate_cameras,
+                        &FlightRun::open_maker,
+                        &FlightRun::open_estimators,
+                        &FlightRun::describe};
   for (const Step& step : steps) {
     if (cancelled()) return stopped();
     if (Status status = (this->*step)(); !status) return status;
@@ -310,7 +314,7 @@ Status FlightRun::deliver(MadeFrame& made) {
     }
     for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
       if (scenario_.estimators[i].camera != shot.camera) continue;
-      VoFrame frame = vo_frame_from(made, shot, camera, grey);
+      VoFrame frame = vo_frame_from(made, shot, camera.name, given_model(shot.camera), grey);
       frame.image_crc32 = row.image_crc32;
       if (i < unsent_samples_.size()) frame.sensors = std::exchange(unsent_samples_[i], {});
       workers_[i]->submit(std::move(frame));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ class FlightRun {
 
  private:
   Status prepare_and_fly();
+  Status calibrate_cameras();
+  /// The camera as the estimators know it: its calibration if it has one, else the truth.
+  [[nodiscard]] const CameraModel& given_model(std::size_t camera) const;
   Status open_maker();
   Status describe_world();
   Status open_estimators();
@@ -84,6 +88,8 @@ class FlightRun {
   std::int64_t begin_ns_ = 0;
   std::int64_t loop_begin_ns_ = 0;  ///< 0 = no frame yet
 
+  /// By camera; empty before calibrate_cameras.
+  std::vector<std::optional<CalibratedIntrinsics>> calibrated_;
   std::unique_ptr<FrameMaker> maker_;
   FaultNews fault_news_;
   SaturationWatch saturation_;

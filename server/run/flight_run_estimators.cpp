@@ -70,7 +70,8 @@ Port FlightRun::open_estimator(const EstimatorSpec& spec) {
                                  *folder,
                                  scenario_.rate.hz(),
                                  options_.cancel,
-                                 scenario_.has_sensors() || flies_log};
+                                 scenario_.has_sensors() || flies_log,
+                                 scenario_.cameras[spec.camera].T_body_camera};
   if (is_outside_estimator(spec.type)) return create_estimator(spec, setting, truth);
   // Also binds the threads that a native estimator starts at once.
   const AffinityGuard guard;
@@ -118,11 +119,11 @@ void FlightRun::prepare_estimators() {
   // All enter first: a simulated clock must not advance while only some have entered
   clock_.enter();
   for (std::size_t i = 0; i < workers_.size(); ++i) {
-    const CameraSpec& camera = scenario_.cameras[scenario_.estimators[i].camera];
+    const std::size_t camera = scenario_.estimators[i].camera;
     VoFrame first;
-    first.camera_id = camera.name;
-    first.intrinsics = camera.model.pinhole();
-    first.distortion = camera.model.distortion();
+    first.camera_id = scenario_.cameras[camera].name;
+    first.intrinsics = given_model(camera).pinhole();
+    first.distortion = given_model(camera).distortion();
     workers_[i]->prepare(std::move(first));
   }
   clock_.leave();

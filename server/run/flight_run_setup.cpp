@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/camera/calibrated_camera.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/run/flight_run.hpp"
 #include "server/scenario/document/scenario_light.hpp"
@@ -15,6 +16,30 @@ namespace {
 constexpr std::int64_t kLockstepEpochUtcNs = 1'767'225'600 * kNsPerS;
 
 }  // namespace
+
+Status FlightRun::calibrate_cameras() {
+  calibrated_.resize(scenario_.cameras.size());
+  for (std::size_t i = 0; i < calibrated_.size(); ++i) {
+    const CameraSpec& camera = scenario_.cameras[i];
+    if (!camera.calibrated) continue;
+    auto made = stages_.measure("calibrate_cameras", [&] {
+      return calibrate_camera(camera, scenario_.seed, {options_.notice, options_.cancel});
+    });
+    if (!made) return made.error();
+    calibrated_[i] = *made;
+    Status logged = recorder_.log(0,
+                                  "info",
+                                  "camera " + camera.name + ", as calibrated: " +
+                                      calibrated_words(*calibrated_[i], camera.model));
+    if (!logged) return logged;
+  }
+  return {};
+}
+
+const CameraModel& FlightRun::given_model(std::size_t camera) const {
+  const std::optional<CalibratedIntrinsics>& calibrated = calibrated_[camera];
+  return calibrated ? calibrated->model : scenario_.cameras[camera].model;
+}
 
 Status FlightRun::open_maker() {
   FrameMakerOptions options;
@@ -34,7 +59,7 @@ Status FlightRun::open_maker() {
 
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
-  if (Status status = recorder_.set_cameras(); !status) return status;
+  if (Status status = recorder_.set_cameras(calibrated_); !status) return status;
   const std::vector<std::string> doubts = maker_->flight_warnings();
   recorder_.manifest().flight =
       RunManifest::Flight{maker_->flight_description(), doubts, maker_->log_start_ns()};

@@ -192,12 +192,15 @@ Status RunRecorder::write_manifest() {
   return write_json(manifest_file(folder_), json_from(manifest_));
 }
 
-Status RunRecorder::set_cameras() {
+Status RunRecorder::set_cameras(
+    const std::vector<std::optional<CalibratedIntrinsics>>& calibrated) {
   std::vector<RunCamera> cameras;
   cameras.reserve(scenario_.cameras.size());
   for (const CameraSpec& spec : scenario_.cameras) {
+    RunManifest::Camera& listed =
+        manifest_.cameras.emplace_back(listed_camera(spec, scenario_.rate));
+    listed.calibrated = calibrated.at(cameras.size());
     cameras.push_back({spec.name, spec.model, spec.T_body_camera});
-    manifest_.cameras.push_back(listed_camera(spec, scenario_.rate));
     if (Status status = write_calibration(folder_, spec); !status) return status;
   }
   timeline_->set_cameras(std::move(cameras));

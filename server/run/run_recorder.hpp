@@ -47,7 +47,8 @@ class RunRecorder {
   [[nodiscard]] TruthSampleFile& truth_samples() { return *truth_samples_; }
 
   /// Adds the cameras to manifest and timeline, and stores their photometric calibration.
-  Status set_cameras();
+  /// @param calibrated  what estimators are given of each camera; empty = the true intrinsics
+  Status set_cameras(const std::vector<std::optional<CalibratedIntrinsics>>& calibrated);
   void set_length(std::int64_t duration_ns, std::int64_t frames_total);
 
   /// @param camera  index; of each frame the main camera's record comes first

@@ -35,6 +35,12 @@ struct RecordedImages {
   std::optional<std::size_t> compare_with;  ///< index of a camera with the same model and mount
 };
 
+/// The estimators get intrinsics that are estimated from images of a virtual board.
+struct VirtualBoardCalibration {
+  DistortionModel model = DistortionModel::kRadtan;  ///< kNone, kRadtan or kEquidistant
+  int views = 20;
+};
+
 struct CameraSpec {
   std::string name = kOnlyCameraName;  ///< unique in the scenario; used in file names
   CameraModel model;
@@ -46,6 +52,7 @@ struct CameraSpec {
   renderer::RenderQuality quality = renderer::RenderQuality::kTrilinear;
   renderer::Atmosphere atmosphere;
   std::optional<RecordedImages> images;  ///< take the place of rendered ones
+  std::optional<VirtualBoardCalibration> calibrated;
 };
 
 }  // namespace overfly::server

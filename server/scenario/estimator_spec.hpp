@@ -14,7 +14,7 @@ namespace overfly::server {
 
 struct EstimatorSpec {
   std::string name;  ///< unique in the scenario; used in file names
-  /// "feature", "perfect", "drifting", "process", "lcm", "ros1"
+  /// "feature", "baseline_...", "perfect", "drifting", "process", "lcm", "ros1"
   std::string type;
   std::size_t camera = 0;   ///< index of the camera whose images it gets
   VoParameters parameters;  ///< set in native estimators, sent to others
@@ -45,6 +45,8 @@ struct EstimatorSpec {
 
 /// True for types whose estimator runs in another process.
 [[nodiscard]] bool is_outside_estimator(const std::string& type);
+/// True for the types that an estimator has to beat (odometry/baseline/).
+[[nodiscard]] bool is_baseline_estimator(const std::string& type);
 /// True for types that get the truth.
 [[nodiscard]] bool is_test_estimator(const std::string& type);
 

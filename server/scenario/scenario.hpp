@@ -133,7 +133,9 @@ struct Scenario {
   bool start_at_runway = true;
   /// Of the course's first leg; if not given, that of the runway, or else south.
   std::optional<double> course_heading_rad;
-  /// Stops the flight early [s].
+  /// The run starts this long after the beginning of the flight.
+  std::int64_t start_ns = 0;
+  /// Stops the flight early [s], from the start of the run.
   std::optional<double> duration_s;
 
   /// At least one; the first is the main one.

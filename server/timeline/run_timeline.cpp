@@ -106,6 +106,11 @@ std::size_t RunTimeline::estimate_count(std::size_t estimator) const {
   return estimates_.at(estimator).rows.size();
 }
 
+std::size_t RunTimeline::log_count() const {
+  const std::lock_guard lock(mutex_);
+  return logs_.size();
+}
+
 std::vector<std::string> RunTimeline::counter_names(std::size_t estimator) const {
   const std::lock_guard lock(mutex_);
   return estimates_.at(estimator).counter_names;

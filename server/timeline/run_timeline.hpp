@@ -61,6 +61,7 @@ class RunTimeline {
                                                             std::size_t limit) const;
   [[nodiscard]] std::size_t frame_count(std::size_t camera = kMainCamera) const;
   [[nodiscard]] std::size_t estimate_count(std::size_t estimator) const;
+  [[nodiscard]] std::size_t log_count() const;
   /// Names of the counters of an estimator's answers so far, in the order of EstimateRow::counters.
   [[nodiscard]] std::vector<std::string> counter_names(std::size_t estimator) const;
   /// Row of the last frame stamped at or before t; empty before the first.

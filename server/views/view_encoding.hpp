@@ -14,10 +14,6 @@
 
 namespace overfly::server {
 
-/// The image, halved (each pixel the mean of four) until it is at most `max_width_px` wide.
-[[nodiscard]] std::shared_ptr<const Image> halved_to_fit(std::shared_ptr<const Image> image,
-                                                         int max_width_px);
-
 /// Width and height from a JPEG's frame header, and whether it is grey; empty if there is no
 /// header.
 struct JpegSize {

@@ -1,16 +1,15 @@
 #include "server/views/view_painter.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
-#include "server/record/map_points.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/timeline/recorded_points.hpp"
 #include "server/timeline/run_timeline.hpp"
 
 namespace overfly::server {
@@ -42,24 +41,6 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
 }
 
-/// The map points that an estimator observed last at or before a frame, world frame; empty if there
-/// are none that can be read, and while it does not track.
-std::vector<Eigen::Vector3f> recorded_points(const std::filesystem::path& folder,
-                                             RecordedNumbers& numbers,
-                                             const RunTimeline& timeline,
-                                             const ViewRibbons& ribbons,
-                                             const FrameRow& row,
-                                             std::size_t estimator) {
-  const auto& alignment = ribbons.alignment_of(estimator);
-  const auto estimate = timeline.estimate_at(estimator, row.t_ns);
-  if (!alignment || !estimate || estimate->sample.state != TrackingState::kTracking) return {};
-  const std::string& name = timeline.estimators()[estimator];
-  const auto frame = numbers.last(map_points_file(folder, name, 0).parent_path(), row.frame);
-  if (!frame) return {};
-  const auto points = read_map_points(map_points_file(folder, name, *frame));
-  if (!points) return {};
-  const auto S_world_vo = alignment->S_world_vo(estimate->sample.map_id, points->S_world_vo);
-  return S_world_vo ? in_world(*points, *S_world_vo) : std::vector<Eigen::Vector3f>();
 }
 
 }  // namespace
@@ -178,8 +159,11 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     std::vector<Eigen::Vector3f> points;
     if (request.live) {
       points = timeline.live_points(i);
-    } else if (folder) {
-      points = recorded_points(*folder, numbers_, timeline, ribbons, row, i);
+    } else if (const auto& alignment = ribbons.alignment_of(i); folder && alignment) {
+      const auto last = [this](const auto& points_folder, std::int64_t frame) {
+        return numbers_.last(points_folder, frame);
+      };
+      points = recorded_points(*folder, timeline, i, *alignment, row, last);
     }
     all.insert(all.end(), points.begin(), points.end());
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibration/virtual/virtual_board.hpp"
@@ -67,6 +68,54 @@ TEST(Calibrator, RecoversAFisheyeFromImages) {
     ASSERT_TRUE(a && b);
     EXPECT_LT((*a - *b).norm(), 0.5) << angle;
   }
+}
+
+TEST(Calibrator, OfALiveCameraTakesStillViewsThatAddSomething) {
+  const CameraModel camera = pinhole_camera();
+  CalibratorOptions options = options_for(DistortionModel::kRadtan);
+  options.live = true;
+  auto calibrator = Calibrator::create(options);
+  ASSERT_TRUE(calibrator.ok());
+  // The first and the last lie in opposite corners of the image.
+  const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 9, 1);
+  const Pose& other = poses.back();
+  const auto add = [&](const Pose& pose, Capture capture = Capture::kUseful) {
+    return *calibrator->add(image_of(camera, pose), "v", capture);
+  };
+  // Whether the board moves is known from the second image on.
+  EXPECT_EQ(add(poses[0]), ViewVerdict::kMoving);
+  ASSERT_TRUE(calibrator->seen());
+  EXPECT_EQ(calibrator->seen()->corners.size(), 54U);
+  EXPECT_EQ(add(poses[0]), ViewVerdict::kTaken);
+  EXPECT_EQ(add(poses[0]), ViewVerdict::kNearDuplicate);
+  EXPECT_EQ(add(other), ViewVerdict::kMoving);
+  EXPECT_EQ(add(other), ViewVerdict::kTaken);
+  // Somewhat aside: no near duplicate, but nothing new.
+  Pose aside = other;
+  aside.translation.x() += 0.02;
+  EXPECT_EQ(add(aside), ViewVerdict::kNothingNew);
+  EXPECT_EQ(add(aside, Capture::kNow), ViewVerdict::kTaken);
+  EXPECT_EQ(add(aside, Capture::kNow), ViewVerdict::kNearDuplicate);
+  Image empty = image_of(camera, poses[0]);
+  std::fill(empty.data.begin(), empty.data.end(), std::uint8_t{90});
+  EXPECT_EQ(*calibrator->add(empty, "v"), ViewVerdict::kNoBoard);
+  EXPECT_FALSE(calibrator->seen());
+  EXPECT_EQ(calibrator->views().size(), 3U);
+}
+
+TEST(Calibrator, TakesAsManyViewsAsItMay) {
+  const CameraModel camera = pinhole_camera();
+  CalibratorOptions options = options_for(DistortionModel::kRadtan);
+  options.most_views = 4;
+  auto calibrator = Calibrator::create(options);
+  ASSERT_TRUE(calibrator.ok());
+  const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 5, 1);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(*calibrator->add(image_of(camera, poses[i]), "v"), ViewVerdict::kTaken);
+  }
+  EXPECT_EQ(*calibrator->add(image_of(camera, poses[4]), "v"), ViewVerdict::kEnough);
+  options.most_views = 3;
+  EXPECT_FALSE(Calibrator::create(options).ok());
 }
 
 TEST(Calibrator, TakesAStillBoardOnce) {

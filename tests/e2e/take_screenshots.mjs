@@ -84,6 +84,18 @@ try {
   await page.locator('.score-table tr[data-alignment=sim3]').first().waitFor();
   await page.waitForTimeout(1000);
   await save('dashboard_scores');
+  await page.getByLabel('Close').first().click();
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await page.locator('[data-role=open-calibration]').click();
+  await page.locator('#calibration-name').selectOption('camera_faults');
+  await page.locator('#calibration-camera').selectOption('oblique');
+  await page.locator('#calibration-model').selectOption('equidistant');
+  await page.locator('[data-role=begin-calibration]').click();
+  await page.locator('[data-parameter=fx]').waitFor({ timeout: 180_000 });
+  await page.locator('.residual-column').nth(4).click();
+  await page.locator('[data-role=last-view]').filter({ hasText: 'View 5' }).waitFor();
+  await page.waitForTimeout(1000);
+  await save('dashboard_calibration');
 } finally {
   await stage.close();
 }

@@ -16,12 +16,15 @@ import './styles/estimators.css';
 import './styles/logs.css';
 import './styles/residuals.css';
 import './styles/scoring.css';
+import './styles/calibration.css';
 import './styles/palette.css';
 import './styles/narrow.css';
+import { CalibrationClient } from './connection/calibration_client';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
+import { CalibrationDesk } from './store/calibration/calibration_desk';
 import { Cameras } from './store/pictures/cameras';
 import { PixelProbe } from './store/pictures/pixel_probe';
 import { Catalogue } from './store/catalogue';
@@ -83,6 +86,7 @@ const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), late
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
 const scores = new ScoreDesk(store, rest, uploadByBrowser);
+const calibration = new CalibrationDesk(store, new CalibrationClient(rest), rest, notices, later);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
 const layouts = new Layouts(store, notices, storage, {
@@ -113,6 +117,7 @@ const context = {
   worlds,
   connect,
   scores,
+  calibration,
   notices,
   client,
   layouts,

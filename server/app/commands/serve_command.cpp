@@ -17,6 +17,7 @@
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/app/token_file.hpp"
+#include "server/imagery/live/live_address.hpp"
 #include "server/net/http/access_token.hpp"
 #include "server/net/server.hpp"
 #include "server/timing/thread_priority.hpp"
@@ -47,6 +48,8 @@ struct ServeArguments {
   bool allow_commands = false;
   /// Links to live vehicles that scenarios may open.
   std::vector<std::string> links;
+  /// Live cameras that calibrations may open.
+  std::vector<std::string> cameras;
 };
 
 void log_line(const std::string& level, const std::string& text) {
@@ -99,6 +102,11 @@ int serve(const ServeArguments& arguments) {
   server::ViewService views(**runs);
 
   net::ServerOptions options;
+  for (const std::string& text : arguments.cameras) {
+    auto camera = server::parse_live_address(text, "--allow-camera");
+    if (!camera) return report(camera.error());
+    options.cameras.push_back(std::move(*camera));
+  }
   options.address = arguments.address;
   options.port = arguments.port;
   options.token = std::move(*token);
@@ -180,6 +188,12 @@ void add_serve_command(CLI::App& app, int& exit_code) {
                       arguments->links,
                       "Link to a live vehicle that scenarios may open, e.g. "
                       "udp-listen:127.0.0.1:14550; repeatable");
+  command
+      ->add_option("--allow-camera",
+                   arguments->cameras,
+                   "Live camera that calibrations may open, e.g. rtsp://192.168.1.10/stream; "
+                   "repeatable")
+      ->allow_extra_args(false);
   command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }
 

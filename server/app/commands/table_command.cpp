@@ -25,7 +25,7 @@ struct TableArguments {
   double margin_percent = 10.0;
 };
 
-Result<experiments::TableOptions> options_from(const TableArguments& arguments) {
+Result<experiments::TableOptions> table_options_from(const TableArguments& arguments) {
   experiments::TableOptions options;
   options.differences.margin = arguments.margin_percent / 100.0;
   if (!arguments.published.empty()) {
@@ -56,7 +56,7 @@ std::string text_of(const experiments::SweepTables& tables,
 }
 
 int table(const TableArguments& arguments) {
-  const Result<experiments::TableOptions> options = options_from(arguments);
+  const Result<experiments::TableOptions> options = table_options_from(arguments);
   if (!options) return report(options.error());
   Result<experiments::SweepScores> scores = experiments::read_sweep_scores(arguments.folder);
   if (!scores) return report(scores.error());

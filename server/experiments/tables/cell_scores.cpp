@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "server/scenario/estimator_spec.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -33,7 +35,9 @@ void keep(std::vector<double>& values, const std::optional<double>& value) {
   if (value && std::isfinite(*value)) values.push_back(*value);
 }
 
-void add_flight(const FlightScore& flight, const ErrorConvention& convention, ErrorValues& values) {
+void add_flight_errors(const FlightScore& flight,
+                       const ErrorConvention& convention,
+                       ErrorValues& values) {
   const auto found = flight.score.alignments.find(convention.mode);
   if (!convention.counts(flight) || found == flight.score.alignments.end()) return;
   const evaluation::AlignmentScore& score = found->second;
@@ -57,7 +61,7 @@ CellScores scores_of(const SweepScores& scores,
   std::vector<ErrorValues> values(all_conventions().size());
   for (const FlightScore& flight : scores.flights) {
     if (flight.estimator != estimator || flight.cell != cell) continue;
-    row.baseline = is_baseline(flight.type);
+    row.baseline = is_baseline_estimator(flight.type);
     ++row.flights;
     row.initialised += flight.score.initialised_at_s ? 1 : 0;
     row.completed += flight.outcome == Outcome::kCompleted ? 1 : 0;
@@ -65,7 +69,7 @@ CellScores scores_of(const SweepScores& scores,
     ++row.outcomes[evaluation::to_string(flight.outcome)];
     row.runs.push_back(flight.run);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      add_flight(flight, all_conventions()[i], values[i]);
+      add_flight_errors(flight, all_conventions()[i], values[i]);
     }
   }
   row.success = evaluation::wilson_interval(row.completed, row.flights);
@@ -101,8 +105,6 @@ const std::vector<ErrorConvention>& all_conventions() {
 
 const ErrorConvention& paper_convention() { return all_conventions()[0]; }
 const ErrorConvention& sim3_convention() { return all_conventions()[1]; }
-
-bool is_baseline(const std::string& type) { return type.starts_with("baseline_"); }
 
 std::vector<CellScores> cell_scores(const SweepScores& scores) {
   std::vector<CellScores> rows;

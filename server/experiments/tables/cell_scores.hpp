@@ -51,7 +51,7 @@ struct CellErrors {
 struct CellScores {
   nlohmann::json cell;
   std::string estimator;
-  bool baseline = false;  ///< a humble baseline, see is_baseline()
+  bool baseline = false;  ///< of a type that exists to be beaten
   int flights = 0;
   int initialised = 0;
   int completed = 0;
@@ -61,9 +61,6 @@ struct CellScores {
   std::vector<std::string> runs;
   std::vector<CellErrors> errors;  ///< as all_conventions()
 };
-
-/// Whether estimators of this type exist to be beaten.
-[[nodiscard]] bool is_baseline(const std::string& type);
 
 /// Every cell, with every estimator that flew in it, in the order of SweepScores.
 [[nodiscard]] std::vector<CellScores> cell_scores(const SweepScores& scores);

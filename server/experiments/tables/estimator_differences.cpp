@@ -9,10 +9,10 @@ namespace {
 using Quantity = std::optional<Spread> CellErrors::*;
 
 /// Medians of one estimator by cell.
-std::map<std::string, double> medians_of(const std::vector<CellScores>& rows,
-                                         const std::string& estimator,
-                                         std::size_t convention,
-                                         Quantity quantity) {
+std::map<std::string, double> medians_by_cell(const std::vector<CellScores>& rows,
+                                              const std::string& estimator,
+                                              std::size_t convention,
+                                              Quantity quantity) {
   std::map<std::string, double> medians;
   for (const CellScores& row : rows) {
     const std::optional<Spread>& spread = row.errors[convention].*quantity;
@@ -73,11 +73,11 @@ std::vector<EstimatorDifference> estimator_differences(const std::vector<CellSco
   std::vector<double> p_values;
   for (const auto& [name, quantity] : quantities) {
     for (std::size_t i = 0; i < estimators.size(); ++i) {
-      const auto first = medians_of(rows, estimators[i], convention, quantity);
+      const auto first = medians_by_cell(rows, estimators[i], convention, quantity);
       for (std::size_t j = i + 1; j < estimators.size(); ++j) {
         if (baseline_in(rows, estimators[i]) && baseline_in(rows, estimators[j])) continue;
         EstimatorDifference result =
-            compared(first, medians_of(rows, estimators[j], convention, quantity), options);
+            compared(first, medians_by_cell(rows, estimators[j], convention, quantity), options);
         result.first = estimators[i];
         result.second = estimators[j];
         result.quantity = name;

@@ -68,7 +68,7 @@ struct CellMedians {
   double best_baseline = std::numeric_limits<double>::infinity();
 };
 
-CellMedians medians_of(const CellRows& rows, std::size_t convention, Quantity quantity) {
+CellMedians cell_medians(const CellRows& rows, std::size_t convention, Quantity quantity) {
   CellMedians medians;
   for (const CellScores* row : rows) {
     std::optional<double>& value = medians.values.emplace_back();
@@ -115,7 +115,7 @@ DocumentTable error_table(const SweepTables& tables,
   for (const CellRows& rows : rows_by_cell(tables)) {
     std::vector<TableCell> line = axis_cells(tables.scores, cell_of(rows));
     for (const ShownQuantity& shown : quantities) {
-      const CellMedians medians = medians_of(rows, convention, shown.quantity);
+      const CellMedians medians = cell_medians(rows, convention, shown.quantity);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         line.push_back(median_cell(rows, medians, i, convention, shown.quantity));
       }

@@ -2,62 +2,29 @@
 // no protocols, and only demuxers and decoders of common camera formats.
 #include "server/imagery/video_images.hpp"
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/imgutils.h>
-#include <libswscale/swscale.h>
-}
-
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
 #include "core/cancel.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/time.hpp"
+#include "server/imagery/video/ffmpeg_handles.hpp"
 
 namespace overfly::server {
 namespace {
 
 constexpr std::size_t kMaxVideoFrames = 2'000'000;
-constexpr int kMaxSidePx = 8192;
 constexpr int kIoBytes = 1 << 16;
 constexpr std::int64_t kLatestNs = std::int64_t{1} << 60U;
 constexpr const char* kFormats = "matroska,webm,mov,mp4,m4a,3gp,3g2,mj2,avi,mpegts";
-constexpr const char* kDecoders =
-    "vp8,vp9,libvpx,libvpx-vp9,av1,libdav1d,libaom-av1,h264,hevc,mpeg4,mpeg2video,mjpeg,ffv1,"
-    "rawvideo,prores,huffyuv,utvideo";
 
-std::string ffmpeg_text(int code) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
-  av_strerror(code, text.data(), text.size());
-  return text.data();
-}
-
-struct FormatCloser {
-  void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
-};
 struct IoCloser {
   void operator()(AVIOContext* context) const {
     av_freep(&context->buffer);
     avio_context_free(&context);
   }
 };
-struct CodecCloser {
-  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
-};
-struct PacketCloser {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-struct FrameCloser {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-};
-struct ScalerCloser {
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-
 /// The file as FFmpeg reads it.
 struct OpenFile {
   ReadableFile file;
@@ -121,7 +88,8 @@ class VideoImages final : public ImageSource {
       if (!*more || *position_ns_ > wanted_ns) return damaged(i, "cannot be decoded");
       if (*position_ns_ == wanted_ns) break;
     }
-    if ((frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame_->decode_error_flags != 0) {
+    if ((decoder_.frame->flags & AV_FRAME_FLAG_CORRUPT) != 0 ||
+        decoder_.frame->decode_error_flags != 0) {
       return damaged(i, "is damaged");
     }
     return grey(i);
@@ -156,7 +124,7 @@ class VideoImages final : public ImageSource {
         [](void* self) { return is_cancelled(static_cast<VideoImages*>(self)->cancel_) ? 1 : 0; },
         this};
     context->format_whitelist = av_strdup(kFormats);
-    context->codec_whitelist = av_strdup(kDecoders);
+    context->codec_whitelist = av_strdup(kVideoDecoders);
     context->protocol_whitelist = av_strdup("none");
     context->max_streams = 16;
     // Frees the context if it fails.
@@ -177,32 +145,9 @@ class VideoImages final : public ImageSource {
   }
 
   Status open_decoder() {
-    const AVCodecParameters& parameters = *stream_->codecpar;
-    if (parameters.width <= 0 || parameters.height <= 0 || parameters.width > kMaxSidePx ||
-        parameters.height > kMaxSidePx) {
-      return unreadable("frames of " + std::to_string(parameters.width) + " x " +
-                        std::to_string(parameters.height) + " px: must be at most " +
-                        std::to_string(kMaxSidePx) + " px wide and high");
-    }
-    const AVCodec* const codec = avcodec_find_decoder(parameters.codec_id);
-    if (codec == nullptr) {
-      return Error{ErrorCode::kUnsupported,
-                   name_.string() + ": no decoder for " + avcodec_get_name(parameters.codec_id)};
-    }
-    decoder_.reset(avcodec_alloc_context3(codec));
-    packet_.reset(av_packet_alloc());
-    frame_.reset(av_frame_alloc());
-    if (!decoder_ || !packet_ || !frame_) {
-      return Error{ErrorCode::kInternal, name_.string() + ": out of memory"};
-    }
-    int code = avcodec_parameters_to_context(decoder_.get(), &parameters);
-    decoder_->max_pixels = std::int64_t{kMaxSidePx} * kMaxSidePx;
-    decoder_->thread_count = 1;
-    decoder_->pkt_timebase = stream_->time_base;
-    decoder_->codec_whitelist = av_strdup(kDecoders);
-    if (code >= 0) code = avcodec_open2(decoder_.get(), codec, nullptr);
-    if (code < 0)
-      return unreadable("decoder " + std::string(codec->name) + ": " + ffmpeg_text(code));
+    Result<VideoDecoder> opened = VideoDecoder::open(*stream_);
+    if (!opened) return opened.error().in(name_.string());
+    decoder_ = std::move(*opened);
     return {};
   }
 
@@ -219,12 +164,12 @@ class VideoImages final : public ImageSource {
   Status list_frames() {
     std::uint64_t without_time = 0;
     int code = 0;
-    while ((code = av_read_frame(format_.get(), packet_.get())) >= 0) {
-      const bool own = packet_->stream_index == stream_->index;
-      const std::optional<std::int64_t> t_ns = own ? time_ns(packet_->pts) : std::nullopt;
+    while ((code = av_read_frame(format_.get(), decoder_.packet.get())) >= 0) {
+      const bool own = decoder_.packet->stream_index == stream_->index;
+      const std::optional<std::int64_t> t_ns = own ? time_ns(decoder_.packet->pts) : std::nullopt;
       if (t_ns) stamps_ns_.push_back(*t_ns);
       without_time += own && !t_ns ? 1 : 0;
-      av_packet_unref(packet_.get());
+      av_packet_unref(decoder_.packet.get());
       if (stamps_ns_.size() > kMaxVideoFrames) {
         return unreadable("has more than " + std::to_string(kMaxVideoFrames) + " frames");
       }
@@ -247,7 +192,7 @@ class VideoImages final : public ImageSource {
     const int code = av_seek_frame(format_.get(), stream_->index, stamp, AVSEEK_FLAG_BACKWARD);
     if (code < 0)
       return unreadable("cannot be read from " + std::to_string(s_from_ns(t_ns)) + " s");
-    avcodec_flush_buffers(decoder_.get());
+    avcodec_flush_buffers(decoder_.context.get());
     ended_ = false;
     position_ns_.reset();
     return {};
@@ -256,65 +201,31 @@ class VideoImages final : public ImageSource {
   /// Decodes the next frame that has a time. @return false at the end
   Result<bool> decode_next() {
     while (true) {
-      const int code = avcodec_receive_frame(decoder_.get(), frame_.get());
+      const int code = avcodec_receive_frame(decoder_.context.get(), decoder_.frame.get());
       if (code >= 0) {
-        const auto t_ns = time_ns(frame_->best_effort_timestamp);
+        const auto t_ns = time_ns(decoder_.frame->best_effort_timestamp);
         if (!t_ns) continue;
         position_ns_ = t_ns;
         return true;
       }
       if (code == AVERROR_EOF || ended_) return false;
       if (code != AVERROR(EAGAIN)) return unreadable(ffmpeg_text(code));
-      if (av_read_frame(format_.get(), packet_.get()) < 0) {
+      if (av_read_frame(format_.get(), decoder_.packet.get()) < 0) {
         ended_ = true;
-        (void)avcodec_send_packet(decoder_.get(), nullptr);
+        (void)avcodec_send_packet(decoder_.context.get(), nullptr);
         continue;
       }
       // A packet that cannot be decoded costs its frame only.
-      if (packet_->stream_index == stream_->index) {
-        (void)avcodec_send_packet(decoder_.get(), packet_.get());
+      if (decoder_.packet->stream_index == stream_->index) {
+        (void)avcodec_send_packet(decoder_.context.get(), decoder_.packet.get());
       }
-      av_packet_unref(packet_.get());
+      av_packet_unref(decoder_.packet.get());
     }
   }
 
-  /// The decoded frame in full range.
   Result<Image> grey(std::size_t i) {
-    const int width = frame_->width;
-    const int height = frame_->height;
-    if (width <= 0 || height <= 0 || width > kMaxSidePx || height > kMaxSidePx) {
-      return damaged(i, "has an impossible size");
-    }
-    const auto format = static_cast<AVPixelFormat>(frame_->format);
-    scaler_.reset(sws_getCachedContext(scaler_.release(),
-                                       width,
-                                       height,
-                                       format,
-                                       width,
-                                       height,
-                                       AV_PIX_FMT_GRAY8,
-                                       SWS_BILINEAR | SWS_ACCURATE_RND,
-                                       nullptr,
-                                       nullptr,
-                                       nullptr));
-    if (!scaler_) return damaged(i, "has a pixel format that is not read");
-    const bool full = frame_->color_range == AVCOL_RANGE_JPEG;
-    const int* const matrix = sws_getCoefficients(SWS_CS_ITU709);
-    (void)sws_setColorspaceDetails(
-        scaler_.get(), matrix, full ? 1 : 0, matrix, 1, 0, 1 << 16, 1 << 16);
-    // Rows of FFmpeg's own alignment: its fast paths write whole vectors.
-    const int row_bytes = (width + 63) / 64 * 64;
-    std::vector<std::uint8_t> rows(static_cast<std::size_t>(row_bytes) * height + 64);
-    std::uint8_t* const planes[4] = {rows.data(), nullptr, nullptr, nullptr};
-    const int steps[4] = {row_bytes, 0, 0, 0};
-    if (sws_scale(scaler_.get(), frame_->data, frame_->linesize, 0, height, planes, steps) !=
-        height) {
-      return damaged(i, "cannot be converted");
-    }
-    Image image(width, height, 1);
-    for (int y = 0; y < height; ++y) {
-      std::copy_n(rows.data() + static_cast<std::size_t>(row_bytes) * y, width, &image.at(0, y));
-    }
+    Result<Image> image = converter_.convert(*decoder_.frame);
+    if (!image) return damaged(i, image.error().message);
     return image;
   }
 
@@ -324,10 +235,8 @@ class VideoImages final : public ImageSource {
   std::unique_ptr<AVIOContext, IoCloser> io_;
   std::unique_ptr<AVFormatContext, FormatCloser> format_;  ///< closed before io_
   AVStream* stream_ = nullptr;                             ///< of format_
-  std::unique_ptr<AVCodecContext, CodecCloser> decoder_;
-  std::unique_ptr<AVPacket, PacketCloser> packet_;
-  std::unique_ptr<AVFrame, FrameCloser> frame_;
-  std::unique_ptr<SwsContext, ScalerCloser> scaler_;
+  VideoDecoder decoder_;
+  GreyConverter converter_;
   std::vector<std::int64_t> stamps_ns_;
   std::vector<std::string> warnings_;
   std::optional<std::int64_t> position_ns_;  ///< of the last decoded frame

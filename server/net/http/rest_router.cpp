@@ -112,12 +112,13 @@ void RestRouter::receive(const HttpRequest& request,
       return;
     }
     for (const Route& route : routes_) {
-      if (!route.receiver || !match(route.segments, url->segments)) continue;
+      auto path = route.receiver ? match(route.segments, url->segments) : std::nullopt;
+      if (!path) continue;
       if (const Status status = check_query(url->query, route.query); !status) {
         *answer = error_response(status.error());
         return;
       }
-      *sink = route.receiver({request, {}, url->query}, size_bytes, answer);
+      *sink = route.receiver({request, std::move(*path), url->query}, size_bytes, answer);
       return;
     }
   };

@@ -89,6 +89,13 @@ bool TokenGate::has_token(const HttpRequest& request) const {
   return found;
 }
 
+bool TokenGate::is_shown_in_query(const HttpRequest& request) const {
+  if (token_.empty()) return false;
+  std::string target = request.target;
+  const auto shown = take_query_parameter(&target, kParameter);
+  return shown && same_token(token_in(*shown), token_);
+}
+
 std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
   const auto shown = take_query_parameter(&request->target, kParameter);
   if (token_.empty()) return std::nullopt;

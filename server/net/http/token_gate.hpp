@@ -22,6 +22,10 @@ class TokenGate {
   /// it
   [[nodiscard]] std::optional<HttpResponse> check(HttpRequest* request) const;
 
+  /// True if a token is required and the request shows it in the query parameter, as one does who
+  /// was given the address, and not a page that only knows where the server is.
+  [[nodiscard]] bool is_shown_in_query(const HttpRequest& request) const;
+
  private:
   [[nodiscard]] bool has_token(const HttpRequest& request) const;
   std::string token_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
+#include "server/calibration/session/calibration_desk.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/net/http/rest_router.hpp"
 #include "server/net/rest/progress_board.hpp"
@@ -41,5 +43,14 @@ void add_log_routes(RestRouter* router, const LogRoutes& routes);
 void add_trajectory_routes(RestRouter* router,
                            server::TrajectoryLibrary* library,
                            const ReadingRoutes& readers);
+
+/// calibration-sources, calibration-sessions and what is in them
+void add_calibration_session_routes(RestRouter* router, server::CalibrationDesk* desk);
+/// calibrations, calibrations/{name}
+void add_calibration_routes(RestRouter* router, server::CalibrationDesk* desk);
+/// A camera of a scenario for its calibration. Errors: kNotFound; kInvalidArgument.
+[[nodiscard]] Result<server::CameraSpec> scenario_camera(const server::RunManager& runs,
+                                                         const std::string& scenario,
+                                                         const std::string& camera);
 
 }  // namespace overfly::net

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
+#include "server/net/stream/picture_codec.hpp"
 
 namespace overfly::net {
 namespace {
@@ -241,7 +242,8 @@ void PictureStreams::ready(const PictureTicket& ticket,
   header.full_width_px = static_cast<std::uint16_t>(picture->full_width_px);
   header.full_height_px = static_cast<std::uint16_t>(picture->full_height_px);
   if (!picture->labels.empty()) port->send_text(to_text(labels_json(header, picture->labels)));
-  port->send_picture(ticket, header, picture->bytes);
+  const auto head = encode_picture_header(header);
+  port->send_picture(ticket, {head.begin(), head.end()}, picture->bytes);
 }
 
 void PictureStreams::tell_error(Stream* stream, const Error& error, ViewerPort* port) {

@@ -105,12 +105,16 @@ void Viewer::greet(const std::string& connection_name) {
                            {"connection", connection_name}}));
 }
 
-void Viewer::handle(const std::string& text, std::int64_t now_ns) {
+void Viewer::take_text(const std::string& text, std::int64_t now_ns) {
   if (opening_) {
     waiting_.push_back(text);
   } else {
     carry_out(text, now_ns);
   }
+}
+
+void Viewer::take_binary(std::span<const std::uint8_t> /*bytes*/, std::int64_t now_ns) {
+  take_text(std::string(), now_ns);
 }
 
 void Viewer::carry_out(const std::string& text, std::int64_t now_ns) {

@@ -1,5 +1,4 @@
-// One WebSocket client: parses its messages and decides what it is sent. Uses no socket and no
-// clock. Not thread-safe: the connection calls it from its strand.
+// One client of the dashboard's WebSocket: parses its messages and decides what it is sent.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +17,27 @@
 
 namespace overfly::net {
 
-class Viewer {
+class Viewer final : public StreamClient {
  public:
   /// @param port  must outlive the viewer
   explicit Viewer(ViewerPort& port) : port_(port) {}
 
   /// Sends `hello`.
-  void greet(const std::string& connection_name);
+  void greet(const std::string& connection_name) override;
   /// Takes one text message and answers it, at once or, while a run is being opened, after that.
   /// Messages are processed in order.
-  /// @param now_ns  monotonic wall clock, here and below
-  void handle(const std::string& text, std::int64_t now_ns);
-  /// True if so many messages wait for a run to open that no more should be read.
-  [[nodiscard]] bool full() const { return waiting_.size() >= kMaxWaiting; }
-  void run_opened(Result<std::shared_ptr<server::RunTimeline>> timeline, std::int64_t now_ns);
-  /// Sends the messages that are due.
-  void tick(std::int64_t now_ns);
+  void take_text(const std::string& text, std::int64_t now_ns) override;
+  /// Answered as a message that could not be parsed.
+  void take_binary(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
+  [[nodiscard]] bool full() const override { return waiting_.size() >= kMaxWaiting; }
+  void run_opened(Result<std::shared_ptr<server::RunTimeline>> timeline,
+                  std::int64_t now_ns) override;
+  void tick(std::int64_t now_ns) override;
   void picture_ready(const PictureTicket& ticket,
                      const Result<server::Picture>& picture,
-                     std::int64_t now_ns);
-  void picture_sent(const PictureTicket& ticket, std::int64_t now_ns);
-
-  /// Time until the next tick() is needed; empty if nothing becomes due by itself.
-  [[nodiscard]] std::optional<std::int64_t> tick_after_ns() const;
+                     std::int64_t now_ns) override;
+  void picture_sent(const PictureTicket& ticket, std::int64_t now_ns) override;
+  [[nodiscard]] std::optional<std::int64_t> tick_after_ns() const override;
 
  private:
   static constexpr std::size_t kMaxWaiting = 64;

@@ -87,6 +87,12 @@ void RunWarnings::add_of_manifest(const ReportRun& run) {
   if (run.manifest.flight) {
     for (const std::string& text : run.manifest.flight->warnings) warn(text);
   }
+  for (const RunManifest::Camera& camera : run.manifest.cameras) {
+    if (!camera.calibrated) continue;
+    note("",
+         "camera " + camera.name +
+             ": the estimators were given calibrated intrinsics, not the true ones");
+  }
 }
 
 void RunWarnings::add_of_cameras(const ReportRun& run) {

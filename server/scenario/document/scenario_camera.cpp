@@ -122,12 +122,28 @@ Status read_sensor(const Json& camera,
   return {};
 }
 
+/// `true`, or an object with defaults.
+std::optional<VirtualBoardCalibration> calibrated_from(const Json& camera,
+                                                       const CameraModel& truth) {
+  const auto asked = camera.find("calibrated");
+  if (asked == camera.end() || *asked == false) return std::nullopt;
+  const DistortionModel lens = truth.distortion().model;
+  const bool wide = lens == DistortionModel::kEquidistant || lens == DistortionModel::kFov;
+  VirtualBoardCalibration calibrated;
+  calibrated.model = wide ? DistortionModel::kEquidistant : DistortionModel::kRadtan;
+  if (!asked->is_object()) return calibrated;
+  calibrated.model = distortion_model_from(asked->value("model", "")).value_or(calibrated.model);
+  calibrated.views = asked->value("views", calibrated.views);
+  return calibrated;
+}
+
 Result<CameraSpec> camera_spec_from(Json& camera, const std::string& path, const FrameRate& rate) {
   CameraSpec spec;
   spec.name = camera.at("name").get<std::string>();
   Result<CameraModel> model = model_from(camera, path);
   if (!model) return model.error();
   spec.model = *model;
+  spec.calibrated = calibrated_from(camera, spec.model);
   const Result<Pose> mount = mount_from(camera.at("mount"), path + ".mount");
   if (!mount) return mount.error();
   spec.T_body_camera = *mount;

@@ -68,6 +68,16 @@ Status check_camera_poses(const Scenario& scenario) {
                "body's origin"};
 }
 
+/// Only flights that can be flown from any instant on may start late.
+Status check_start(const Scenario& scenario) {
+  if (scenario.start_ns == 0) return {};
+  const char* what = nullptr;
+  if (scenario.is_live()) what = "the flight is live";
+  if (scenario.recorded_camera() != nullptr) what = "a camera has recorded images";
+  if (what == nullptr) return {};
+  return Error{ErrorCode::kInvalidArgument, std::string("start_s: must be 0 because ") + what};
+}
+
 /// Faults are scheduled by the frames of a regular rate, which recorded images do not have.
 Status check_faults_of_real_images(const Scenario& scenario) {
   if (scenario.faults.empty() || scenario.recorded_camera() == nullptr) return {};
@@ -85,6 +95,7 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (document.contains("epoch_utc_s")) {
     scenario.epoch_utc_ns = document.at("epoch_utc_s").get<std::int64_t>() * kNsPerS;
   }
+  scenario.start_ns = ns_from_s(number_or_none(document, "start_s").value_or(0.0));
   scenario.duration_s = number_or_none(document, "duration_s");
   scenario.pacing = document.at("pacing") == "real_time" ? Pacing::kRealTime : Pacing::kLockstep;
   scenario.record_frames = document.at("recording").at("frames").get<bool>();
@@ -93,6 +104,7 @@ Status read_all(Json& document, const fs::path& base, Scenario& scenario) {
   if (Status status = read_flight(document, files, scenario); !status) return status;
   if (Status status = read_cameras(document, files, scenario); !status) return status;
   if (Status status = check_camera_poses(scenario); !status) return status;
+  if (Status status = check_start(scenario); !status) return status;
   if (Status status = read_sensors(document, scenario); !status) return status;
   if (Status status = read_faults(document, scenario); !status) return status;
   if (Status status = check_faults_of_real_images(scenario); !status) return status;

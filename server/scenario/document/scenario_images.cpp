@@ -61,7 +61,7 @@ Status read_images(Json& camera,
                    const FileResolver& files,
                    Scenario& scenario) {
   Json& images = camera.at("images");
-  for (const char* field : {"sensor", "vibration", "atmosphere"}) {
+  for (const char* field : {"sensor", "vibration", "atmosphere", "calibrated"}) {
     if (!camera.contains(field)) continue;
     return Error{ErrorCode::kInvalidArgument,
                  path + "." + field + ": must not be given with " + path + ".images"};

@@ -50,6 +50,7 @@ export async function startServer({
   scenarios = path.join(kRoot, 'scenarios'),
   data = [],
   links = [],
+  cameras = [],
   allowCommands = false,
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
@@ -58,6 +59,7 @@ export async function startServer({
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
   for (const folder of data) args.push('--data', folder);
   for (const link of links) args.push('--allow-link', link);
+  for (const camera of cameras) args.push('--allow-camera', camera);
   if (allowCommands) args.push('--allow-commands');
   const child = spawn(kProgram, args, { cwd: kRoot, stdio: ['ignore', 'pipe', 'pipe'] });
   let output = '';

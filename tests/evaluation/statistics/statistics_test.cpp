@@ -18,7 +18,8 @@ nlohmann::json reference() {
 }
 
 TEST(SampleQuantile, AgreesWithNumPy) {
-  for (const auto& entry : reference().at("quantiles")) {
+  const nlohmann::json cases = reference().at("quantiles");
+  for (const auto& entry : cases) {
     EXPECT_NEAR(sample_quantile(entry.at("values"), entry.at("share")),
                 entry.at("quantile").get<double>(),
                 1e-12)
@@ -27,7 +28,8 @@ TEST(SampleQuantile, AgreesWithNumPy) {
 }
 
 TEST(Holm, AgreesWithR) {
-  for (const auto& entry : reference().at("holm")) {
+  const nlohmann::json cases = reference().at("holm");
+  for (const auto& entry : cases) {
     const std::vector<double> adjusted = holm_adjusted(entry.at("p"));
     const std::vector<double> expected = entry.at("adjusted");
     ASSERT_EQ(adjusted.size(), expected.size());
@@ -37,7 +39,8 @@ TEST(Holm, AgreesWithR) {
 }
 
 TEST(PairedBootstrap, AgreesWithSciPy) {
-  for (const auto& entry : reference().at("bootstrap")) {
+  const nlohmann::json cases = reference().at("bootstrap");
+  for (const auto& entry : cases) {
     const PairedDifference difference = paired_bootstrap(entry.at("a"), entry.at("b"));
     EXPECT_NEAR(difference.median, entry.at("median").get<double>(), 1e-12);
     // 10 000 resamples against 400 000: the medians lie on a grid of steps up to 0.015.

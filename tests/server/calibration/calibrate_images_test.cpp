@@ -25,9 +25,10 @@ const CalibratorOptions kRadtanBoard{{9, 6, 0.03}, {DistortionModel::kRadtan, fa
 
 VirtualCalibration virtual_request(int views) {
   VirtualCalibration request;
-  request.camera = CameraModel(PinholeCamera{480, 360, 340.0, 338.5, 242.0, 177.0},
-                               {DistortionModel::kRadtan, {-0.2, 0.05, 0.0005, -0.0004, 0.0}});
-  request.views = views;
+  request.camera.camera =
+      CameraModel(PinholeCamera{480, 360, 340.0, 338.5, 242.0, 177.0},
+                  {DistortionModel::kRadtan, {-0.2, 0.05, 0.0005, -0.0004, 0.0}});
+  request.camera.views = views;
   return request;
 }
 
@@ -40,11 +41,11 @@ std::string reason_of(const CalibrationRecord& record, const std::string& name) 
 
 TEST(CalibrateVirtual, FindsTheCameraThroughDefocusAndNoise) {
   VirtualCalibration request = virtual_request(24);
-  request.sensor.enabled = true;
-  request.sensor.defocus_sigma_px = 0.7;
-  request.sensor.shot_noise = true;
-  request.sensor.read_noise_e = 8.0;
-  request.sensor.full_well_e = 10000.0;
+  request.camera.sensor.enabled = true;
+  request.camera.sensor.defocus_sigma_px = 0.7;
+  request.camera.sensor.shot_noise = true;
+  request.camera.sensor.read_noise_e = 8.0;
+  request.camera.sensor.full_well_e = 10000.0;
   const auto record = calibrate_virtual(request, kRadtanBoard);
   ASSERT_TRUE(record.ok()) << record.error().message;
   const PinholeCamera& found = record->result.camera.pinhole();

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
+#include "core/time.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::server::experiments {
@@ -67,6 +69,26 @@ TEST_F(SweepDocument, VariantsChangeSeveralFields) {
   const auto scenario = scenario_of(*sweep, cells->back(), 1);
   EXPECT_EQ(scenario->duration_s, 3.0);
   EXPECT_EQ(std::get<BuiltinWorld>(scenario->world).seed, 2U);
+}
+
+TEST_F(SweepDocument, RepeatsStartAtInstantsSpreadOverTheFirstSeconds) {
+  const auto sweep = loaded(R"("axes": [], "set": {"start_s": 1},
+                               "repeats": {"most": 20, "vary_start_s": 5})");
+  ASSERT_TRUE(sweep.ok()) << sweep.error().message;
+  const auto cells = cells_of(*sweep);
+  std::vector<double> starts_s;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const auto scenario = scenario_of(*sweep, cells->front(), repeat);
+    ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+    starts_s.push_back(s_from_ns(scenario->start_ns));
+  }
+  EXPECT_EQ(starts_s.front(), 1.0);
+  std::sort(starts_s.begin(), starts_s.end());
+  EXPECT_LT(starts_s.back(), 6.0);
+  for (std::size_t i = 1; i < starts_s.size(); ++i) {
+    EXPECT_GT(starts_s[i] - starts_s[i - 1], 0.05);
+    EXPECT_LT(starts_s[i] - starts_s[i - 1], 0.65);
+  }
 }
 
 TEST_F(SweepDocument, SkipsCellsThatMatchEveryField) {

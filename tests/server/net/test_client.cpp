@@ -84,6 +84,9 @@ struct WebSocketClient::Impl {
   int next_request = 1000;
   std::vector<nlohmann::json> texts;
   std::vector<PictureMessage> pictures;
+  bool is_stream = true;
+  std::vector<std::vector<std::uint8_t>> binaries;
+  std::string protocol;
 };
 
 WebSocketClient::WebSocketClient(std::uint16_t port) : WebSocketClient(port, Options{}) {}
@@ -102,8 +105,10 @@ WebSocketClient::WebSocketClient(std::uint16_t port, const Options& options)
   }));
   websocket::response_type response;
   error_code error;
-  impl_->ws.handshake(response, "127.0.0.1:" + std::to_string(port), "/api/v1/stream", error);
+  impl_->ws.handshake(response, "127.0.0.1:" + std::to_string(port), options.target, error);
   impl_->open = !error;
+  impl_->is_stream = options.target.starts_with("/api/v1/stream");
+  impl_->protocol = std::string(response[http::field::sec_websocket_protocol]);
 }
 
 WebSocketClient::~WebSocketClient() = default;
@@ -111,6 +116,10 @@ WebSocketClient::~WebSocketClient() = default;
 bool WebSocketClient::is_open() const { return impl_->open; }
 const std::vector<nlohmann::json>& WebSocketClient::texts() const { return impl_->texts; }
 const std::vector<PictureMessage>& WebSocketClient::pictures() const { return impl_->pictures; }
+const std::vector<std::vector<std::uint8_t>>& WebSocketClient::binaries() const {
+  return impl_->binaries;
+}
+const std::string& WebSocketClient::protocol() const { return impl_->protocol; }
 
 void WebSocketClient::send(const nlohmann::json& message) { send_text(message.dump()); }
 
@@ -148,6 +157,10 @@ bool WebSocketClient::read_one() {
     return true;
   }
   const auto* bytes = static_cast<const std::uint8_t*>(buffer.data().data());
+  if (!impl_->is_stream) {
+    impl_->binaries.emplace_back(bytes, bytes + buffer.size());
+    return true;
+  }
   const auto header = net::decode_picture_header({bytes, buffer.size()});
   if (!header) throw std::runtime_error("a binary message is no picture");
   impl_->pictures.push_back({*header, {bytes + net::kPictureHeaderBytes, bytes + buffer.size()}});

@@ -46,6 +46,7 @@ class WebSocketClient {
   struct Options {
     Headers headers;
     int receive_buffer_bytes = 0;  ///< 0 = the system's own
+    std::string target = "/api/v1/stream";
   };
   explicit WebSocketClient(std::uint16_t port);
   WebSocketClient(std::uint16_t port, const Options& options);
@@ -74,6 +75,10 @@ class WebSocketClient {
   /// Every message read so far.
   [[nodiscard]] const std::vector<nlohmann::json>& texts() const;
   [[nodiscard]] const std::vector<PictureMessage>& pictures() const;
+  /// Binary messages of other endpoints than the stream.
+  [[nodiscard]] const std::vector<std::vector<std::uint8_t>>& binaries() const;
+  /// The subprotocol that the server chose; may be empty.
+  [[nodiscard]] const std::string& protocol() const;
 
  private:
   bool read_one();

@@ -10,30 +10,14 @@
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
+#include "tests/server/net/fake_port.hpp"
 
 namespace overfly::net {
 namespace {
 
 using nlohmann::json;
 
-/// Opens every run at once, and keeps what it is asked to draw.
-class FakePort final : public ViewerPort {
- public:
-  void send_text(std::string text) override { texts.push_back(json::parse(text)); }
-  void send_picture(const PictureTicket& /*ticket*/,
-                    const PictureHeader& /*header*/,
-                    std::shared_ptr<const std::vector<std::uint8_t>> /*jpeg*/) override {}
-  void draw(const PictureTicket& ticket, const server::PictureRequest& request) override {
-    drawn.emplace_back(ticket, request);
-  }
-  void open_run(const std::string& /*run_id*/) override { ++opening; }
-  [[nodiscard]] std::optional<double> picture_limit_hz() const override { return std::nullopt; }
-  [[nodiscard]] std::size_t unsent_bytes() const override { return 0; }
-
-  std::vector<json> texts;
-  std::vector<std::pair<PictureTicket, server::PictureRequest>> drawn;
-  int opening = 0;
-};
+using testing::FakePort;
 
 /// A scored run of one frame, whose estimates can be shown by `none`.
 std::shared_ptr<server::RunTimeline> scored_run() {
@@ -60,7 +44,7 @@ class ViewerTest : public ::testing::Test {
   /// Sends a command and carries out what it asks of the connection.
   json command(const json& message) {
     now_ns_ += 1'000'000'000;
-    viewer_.handle(message.dump(), now_ns_);
+    viewer_.take_text(message.dump(), now_ns_);
     while (port_.opening > 0) {
       --port_.opening;
       viewer_.run_opened(timeline_, now_ns_);

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "core/camera/halved_image.hpp"
 #include "server/files/jpeg.hpp"
 #include "tests/support/support.hpp"
 

@@ -41,7 +41,7 @@ export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
 
 export class RestClient {
   constructor(
-    private readonly base: string,
+    readonly base: string,
     private readonly fetch: Fetch,
     /** Called when the server rejects this browser's token. */
     private readonly onLocked: () => void = () => {},
@@ -229,7 +229,7 @@ export class RestClient {
     return null;
   }
 
-  private async call(
+  async call(
     method: string,
     path: string,
     body?: unknown,
@@ -241,6 +241,15 @@ export class RestClient {
       init.body = JSON.stringify(body);
       init.headers = { ...headers, 'Content-Type': 'application/json' };
     }
+    return this.request(path, init);
+  }
+
+  /** With a file as the body. */
+  async callWith(method: string, path: string, body: Blob): Promise<unknown> {
+    return this.request(path, { method, body });
+  }
+
+  private async request(path: string, init: RequestInit): Promise<unknown> {
     let response: Response;
     try {
       response = await this.fetch(`${this.base}${path}`, init);

@@ -10,6 +10,8 @@ import type {
   Run,
   ScenarioEntry,
 } from '../protocol/rest_types';
+import type { CalibrationPage } from './calibration/calibration_page';
+import { initialCalibrationPage } from './calibration/calibration_page';
 import { kDefaultAlignment } from './error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
@@ -79,6 +81,7 @@ export class State {
   paletteOpen = false;
   logPage: LogPage = initialLogPage();
   scorePage: ScorePage = initialScorePage();
+  calibrationPage: CalibrationPage = initialCalibrationPage();
 
   // ---- the main run ----------------------------------------------------------------------------
 
@@ -176,6 +179,7 @@ const kTopicNames = [
   'help',
   'logs',
   'scoring',
+  'calibration',
   'layout',
   'theme',
   'palette',

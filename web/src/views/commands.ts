@@ -94,7 +94,7 @@ function shortcutCommands(context: Context): Command[] {
     }));
 }
 
-function pageCommands({ catalogue, connect, logs, scores }: Context): Command[] {
+function pageCommands({ calibration, catalogue, connect, logs, scores }: Context): Command[] {
   const group = 'Page';
   return [
     {
@@ -103,6 +103,13 @@ function pageCommands({ catalogue, connect, logs, scores }: Context): Command[] 
       title: 'Score trajectories',
       words: 'evaluate upload file plot',
       run: () => void scores.open(),
+    },
+    {
+      id: 'calibration',
+      group,
+      title: 'Calibrate a camera',
+      words: 'intrinsics distortion chequerboard charuco lens',
+      run: () => void calibration.open(),
     },
     { id: 'logs', group, title: 'Fly a log', words: 'upload', run: () => void logs.open() },
     { id: 'connect', group, title: 'Connect to an autopilot', run: () => connect.open() },

@@ -77,7 +77,12 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
-      scoresButton(context),
+      pageButton('Calibrate', 'open-calibration', 'Calibrate a camera', () => {
+        void context.calibration.open();
+      }),
+      pageButton('Score files', 'open-scores', 'Score trajectories of files, runs and logs', () => {
+        void context.scores.open();
+      }),
       this.layouts.root,
       this.themes.root,
       this.connection,
@@ -168,15 +173,6 @@ export class HeaderBar implements View {
   }
 }
 
-function scoresButton({ scores }: Context): HTMLElement {
-  return h(
-    'button',
-    {
-      class: 'tab',
-      'data-role': 'open-scores',
-      title: 'Score trajectories of files, runs and logs',
-      onclick: () => void scores.open(),
-    },
-    'Score files',
-  );
+function pageButton(label: string, role: string, hint: string, open: () => void): HTMLElement {
+  return h('button', { class: 'tab', 'data-role': role, title: hint, onclick: open }, label);
 }

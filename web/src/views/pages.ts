@@ -1,4 +1,4 @@
-// The pages over the dashboard: flight logs, scores of trajectories.
+// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera.
 import { PageOverlay } from './page_overlay';
 import type { Context, View } from './view';
 
@@ -16,10 +16,17 @@ export function makePages(context: Context): View[] {
       page: ({ scorePage }) => scorePage,
       load: async (owner) => new (await import('./scoring/score_page')).ScorePageView(owner),
     }),
+    new PageOverlay(context, {
+      name: 'calibration',
+      topic: 'calibration',
+      page: ({ calibrationPage }) => calibrationPage,
+      load: async (owner) =>
+        new (await import('./calibration/calibration_page')).CalibrationPageView(owner),
+    }),
   ];
 }
 
-/** Files dropped anywhere are uploaded: as trajectories where those are scored, else as logs. */
+/** Files dropped anywhere are uploaded: to the page that is open, else as logs. */
 export function acceptFiles(context: Context): void {
   const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
   document.addEventListener('dragover', (event) => {
@@ -30,7 +37,9 @@ export function acceptFiles(context: Context): void {
     event.preventDefault();
     const files = [...(event.dataTransfer?.files ?? [])];
     if (files.length === 0) return;
-    if (context.store.state.scorePage.open) void context.scores.send(files);
+    const { scorePage, calibrationPage } = context.store.state;
+    if (calibrationPage.open) void context.calibration.send(files);
+    else if (scorePage.open) void context.scores.send(files);
     else void context.logs.open().then(() => context.logs.send(files));
   });
 }

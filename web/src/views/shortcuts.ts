@@ -195,6 +195,7 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.paletteOpen = false;
   store.state.logPage.open = false;
   store.state.scorePage.open = false;
-  store.change('help', 'logs', 'palette', 'scoring');
+  store.state.calibrationPage.open = false;
+  store.change('help', 'logs', 'palette', 'scoring', 'calibration');
   layouts.restore();
 }

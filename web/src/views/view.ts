@@ -1,5 +1,6 @@
 // The interface of every part of the screen.
 import type { Alignment } from '../store/alignment';
+import type { CalibrationDesk } from '../store/calibration/calibration_desk';
 import type { Cameras } from '../store/pictures/cameras';
 import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { Store, Topic } from '../store/state';
@@ -42,6 +43,7 @@ export interface Context {
   worlds: LogWorlds;
   connect: VehicleConnect;
   scores: ScoreDesk;
+  calibration: CalibrationDesk;
   notices: Notices;
   client: StreamClient;
   layouts: Layouts;

@@ -99,10 +99,7 @@ Result<CalibrationRecord> calibrate_scenario(const CalibrateArguments& arguments
   }
   const server::CameraSpec& camera = scenario->cameras[index];
   server::VirtualCalibration request;
-  request.camera = camera.model;
-  request.sensor = camera.sensor;
-  request.views = arguments.views;
-  request.seed = arguments.seed;
+  request.camera = {camera.model, camera.sensor, arguments.views, arguments.seed};
   request.images = arguments.save_images;
   Result<CalibrationRecord> record = server::calibrate_virtual(request, options, progress);
   if (record) record->source = arguments.scenario + ", camera " + camera.name;

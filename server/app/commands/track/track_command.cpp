@@ -218,7 +218,15 @@ void add_estimator_options(CLI::App& command, TrackArguments& arguments) {
                   arguments.estimator,
                   "feature (default), process (default with --command or --listen), lcm, ros1; "
                   "perfect and drifting need --truth")
-      ->check(CLI::IsMember({"feature", "perfect", "drifting", "process", "lcm", "ros1"}));
+      ->check(CLI::IsMember({"feature",
+                             "baseline_hold",
+                             "baseline_homography",
+                             "baseline_dead_reckoning",
+                             "perfect",
+                             "drifting",
+                             "process",
+                             "lcm",
+                             "ros1"}));
   command
       .add_option("--scenario-estimator",
                   arguments.scenario_estimator,

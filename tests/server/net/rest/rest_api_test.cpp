@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "server/files/jpeg.hpp"
 #include "server/files/json_schema.hpp"
@@ -13,6 +14,7 @@
 #include "server/scenario/document/scenario_schema.hpp"
 #include "server/scenario/scenario.hpp"
 #include "tests/flight/logs/northward_log.hpp"
+#include "tests/server/calibration/board_fixture.hpp"
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
 
@@ -79,10 +81,87 @@ class RestApiTest : public ::testing::Test {
     return answer;
   }
 
+  /// Every route of calibrations.
+  void check_calibrations();
+  void wait_until_solved(const std::string& session);
+
   TestServer server_;
   json api_;
   std::set<std::string> seen_;
 };
+
+void RestApiTest::wait_until_solved(const std::string& session) {
+  for (int turns = 0; turns < 3000; ++turns) {
+    if (ask(server_.port(), "GET", session).json().at("solution").is_number()) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ADD_FAILURE() << session << " is not solved";
+}
+
+void RestApiTest::check_calibrations() {
+  const std::string sessions = "/api/v1/calibration-sessions";
+  const std::string one = sessions + "/{id}";
+  check("GET", "/api/v1/calibration-sources", "/api/v1/calibration-sources", 200);
+  check("POST", sessions, sessions, 400, "{}", kJson);
+  const json board = {{"cols", 9}, {"rows", 6}, {"square_m", 0.03}};
+  const auto begin = [&](const json& source, int status) {
+    const json body = {{"source", source}, {"board", board}};
+    return check("POST", sessions, sessions, status, body.dump(), kJson);
+  };
+  begin({{"kind", "folder"}, {"name", "none"}}, 404);
+  const std::string session = begin({{"kind", "upload"}}, 201).headers.at("location");
+  const std::string other = begin({{"kind", "upload"}}, 201).headers.at("location");
+  begin({{"kind", "upload"}}, 503);
+  EXPECT_EQ(check("GET", sessions, sessions, 200).json().at("sessions").size(), 2U);
+  check("DELETE", one, other, 204);
+  check("DELETE", one, other, 404);
+  check("GET", one, other, 404);
+  check("GET", one + "/solution", session + "/solution", 404);
+  check("POST", one + "/solution", session + "/solution", 409, "{}", kJson);
+  check("POST", one + "/solution", session + "/solution", 400, R"({"left_out":[-1]})", kJson);
+  for (const Image& image : server::testing::board_images(5)) {
+    const auto jpeg = server::encode_jpeg(image, 95).value();
+    const std::string images = session + "/images?name=a.jpg";
+    const std::string body(jpeg.begin(), jpeg.end());
+    while (ask(server_.port(), "GET", session).json().at("phase") == "opening") {
+    }
+    const json before = ask(server_.port(), "GET", session).json().at("images");
+    check("POST", one + "/images", images, 202, body);
+    while (ask(server_.port(), "GET", session).json().at("images") == before) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  check("POST", one + "/images", session + "/images?name=", 400, "x");
+  check("GET", one + "/images/{file}", session + "/images/0.jpg", 200);
+  check("GET", one + "/images/{file}", session + "/images/0.png", 404);
+  check("POST", one + "/control", session + "/control", 202, R"({"finish":true})", kJson);
+  check("POST", one + "/control", session + "/control", 400, R"({"finish":1})", kJson);
+  wait_until_solved(session);
+  check("POST", one + "/control", session + "/control", 409, R"({"capture":true})", kJson);
+  const json state = check("GET", one, session, 200).json();
+  check("GET", one, session + "?revision=" + state.at("revision").dump(), 204);
+  check("POST", one + "/solution", session + "/solution", 202, R"({"left_out":[0]})", kJson);
+  check("GET", one + "/solution", session + "/solution", 200);
+  check("GET", one + "/views/{view}", session + "/views/0", 200);
+  check("GET", one + "/views/{view}", session + "/views/5", 404);
+
+  const std::string saved = "/api/v1/calibrations";
+  const std::string id = session.substr(session.rfind('/') + 1);
+  const std::string save = json{{"session", id}, {"name", "c"}}.dump();
+  EXPECT_TRUE(check("GET", saved, saved, 200).json().at("calibrations").empty());
+  check("POST", saved, saved, 201, save, kJson);
+  check("POST", saved, saved, 409, save, kJson);
+  check("POST", saved, saved, 404, json{{"session", "none"}, {"name", "c"}}.dump(), kJson);
+  check("POST", saved, saved, 400, json{{"session", id}, {"name", "../c"}}.dump(), kJson);
+  EXPECT_EQ(check("GET", saved, saved, 200).json().at("calibrations").size(), 1U);
+  check("GET", saved + "/{name}", saved + "/c", 200);
+  check("GET", saved + "/{name}", saved + "/c?format=kalibr", 200);
+  check("GET", saved + "/{name}", saved + "/c?format=dso", 200);
+  check("GET", saved + "/{name}", saved + "/c?format=x", 400);
+  check("GET", saved + "/{name}", saved + "/none", 404);
+  check("DELETE", saved + "/{name}", saved + "/c", 204);
+  check("DELETE", saved + "/{name}", saved + "/c", 404);
+}
 
 TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   const std::string runs = "/api/v1/runs";
@@ -196,6 +275,8 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("DELETE", files + "/{name}", file, 204);
   check("DELETE", files + "/{name}", file, 404);
   check("POST", evaluations, evaluations, 404, scored.dump(), kJson);
+
+  check_calibrations();
 
   // Nothing is documented that was not asked for above.
   for (const auto& [path, operations] : api_.at("paths").items()) {

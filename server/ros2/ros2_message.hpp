@@ -9,7 +9,7 @@
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
 #include "core/motion/pose.hpp"
-#include "server/export/mcap/ros2_type.hpp"
+#include "server/ros2/ros2_type.hpp"
 
 namespace overfly::server {
 

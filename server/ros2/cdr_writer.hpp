@@ -12,7 +12,7 @@
 
 #include "core/motion/pose.hpp"
 #include "core/time.hpp"
-#include "server/export/mcap/ros2_type.hpp"
+#include "server/ros2/ros2_type.hpp"
 
 namespace overfly::server {
 
@@ -31,6 +31,8 @@ inline const std::string kVector3 =
 class CdrWriter {
  public:
   explicit CdrWriter(const Ros2Header& first) { header(first); }
+  /// A message that begins with a time.
+  explicit CdrWriter(const Ros2Time& first) { time(first); }
   /// A message that begins with the length of a sequence.
   explicit CdrWriter(std::uint32_t length) { number(length); }
 
@@ -55,9 +57,12 @@ class CdrWriter {
     number(static_cast<std::uint32_t>(values.size()));
     bytes_.insert(bytes_.end(), values.begin(), values.end());
   }
+  void time(const Ros2Time& time) {
+    number(static_cast<std::int32_t>(time.stamp_ns / kNsPerS));
+    number(static_cast<std::uint32_t>(time.stamp_ns % kNsPerS));
+  }
   void header(const Ros2Header& header) {
-    number(static_cast<std::int32_t>(header.stamp_ns / kNsPerS));
-    number(static_cast<std::uint32_t>(header.stamp_ns % kNsPerS));
+    time({header.stamp_ns});
     text(header.frame_id);
   }
   void pose(const Pose& pose) {

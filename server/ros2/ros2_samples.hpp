@@ -8,7 +8,7 @@
 
 #include "core/result.hpp"
 #include "core/sensors/sensor_samples.hpp"
-#include "server/export/mcap/ros2_type.hpp"
+#include "server/ros2/ros2_type.hpp"
 
 namespace overfly::server {
 

@@ -1,10 +1,11 @@
-#include "server/export/mcap/ros2_samples.hpp"
+#include "server/ros2/ros2_samples.hpp"
 
 #include <array>
 #include <limits>
 
 #include "middleware/ros1/frame_names.hpp"
-#include "server/export/mcap/cdr_writer.hpp"
+#include "server/ros2/cdr_writer.hpp"
+#include "server/ros2/ros2_flight.hpp"
 
 namespace overfly::server {
 namespace {
@@ -23,13 +24,6 @@ const Ros2Type kFluidPressure = {
 const Ros2Type kTemperature = {
     "sensor_msgs/msg/Temperature",
     "std_msgs/Header header\nfloat64 temperature\nfloat64 variance\n" + ros2_definition::kHeader};
-const Ros2Type kNavSatFix = {
-    "sensor_msgs/msg/NavSatFix",
-    "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\n"
-    "float64 longitude\nfloat64 altitude\nfloat64[9] position_covariance\n"
-    "uint8 position_covariance_type\n" +
-        ros2_definition::kHeader + ros2_definition::kSeparator +
-        "MSG: sensor_msgs/NavSatStatus\nint8 status\nuint16 service\n"};
 const Ros2Type kTwistStamped = {"geometry_msgs/msg/TwistStamped",
                                 "std_msgs/Header header\ngeometry_msgs/Twist twist\n" +
                                     ros2_definition::kHeader + ros2_definition::kSeparator +
@@ -141,7 +135,7 @@ Status with_each_ros2_sample(const SensorSamples& samples,
   with_all("/sensors/imu", kBodyFrame, kImu, samples.imu, as_message);
   with_all("/sensors/pressure", kBodyFrame, kFluidPressure, samples.barometer, write_pressure);
   with_all("/sensors/temperature", kBodyFrame, kTemperature, samples.barometer, write_temperature);
-  with_all("/sensors/gps/fix", kBodyFrame, kNavSatFix, samples.gps, write_fix);
+  with_all("/sensors/gps/fix", kBodyFrame, kRos2NavSatFix, samples.gps, write_fix);
   with_all("/sensors/gps/velocity", ros1::kWorldFrame, kTwistStamped, samples.gps, write_velocity);
   with_all("/sensors/airspeed/differential_pressure",
            kBodyFrame,

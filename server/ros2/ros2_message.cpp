@@ -1,8 +1,8 @@
-#include "server/export/mcap/ros2_message.hpp"
+#include "server/ros2/ros2_message.hpp"
 
 #include <array>
 
-#include "server/export/mcap/cdr_writer.hpp"
+#include "server/ros2/cdr_writer.hpp"
 
 namespace overfly::server {
 

@@ -1,0 +1,384 @@
+// Runs a calibration on the server and follows it. The page computes nothing of the camera itself.
+import type { CalibrationClient, SessionControl } from '../../connection/calibration_client';
+import { RestError } from '../../connection/rest_client';
+import type { CalibrationSession } from '../../protocol/calibration_types';
+import type { JsonObject } from '../../protocol/rest_types';
+import type { Notices } from '../notices';
+import type { Store } from '../state';
+import type { CalibrationForm } from './calibration_form';
+import { lensOf, requestOf } from './calibration_form';
+import type { CalibrationPage } from './calibration_page';
+import { calibratedSection } from './calibration_results';
+
+/** While a camera is shown, and otherwise. */
+const kLivePeriod_ms = 150;
+const kQuietPeriod_ms = 600;
+/** Before an image is offered again that the server had no room for. */
+const kUploadPause_ms = 200;
+
+export type Later = (callback: () => void, delay_ms: number) => number;
+
+export interface ScenarioReader {
+  scenario(name: string): Promise<JsonObject>;
+}
+
+export class CalibrationDesk {
+  /** Increases when a session is begun or left: answers about the one before are dropped. */
+  private generation = 0;
+  private polling = false;
+
+  constructor(
+    private readonly store: Store,
+    private readonly client: CalibrationClient,
+    private readonly scenarios: ScenarioReader,
+    private readonly notices: Notices,
+    private readonly later: Later,
+  ) {}
+
+  async open(): Promise<void> {
+    const { page } = this;
+    page.open = true;
+    const { scenarioName } = this.store.state;
+    if (page.form.names.scenario === '' && scenarioName !== null) {
+      page.form.names.scenario = scenarioName;
+    }
+    this.changed();
+    await Promise.all([this.readLists(), this.readCameras(), this.resume()]);
+  }
+
+  /** The session goes on; a live camera is let go by the server after a while. */
+  close(): void {
+    this.page.open = false;
+    this.changed();
+  }
+
+  async readLists(): Promise<void> {
+    const { page } = this;
+    try {
+      const [sources, saved] = await Promise.all([this.client.sources(), this.client.saved()]);
+      page.sources = sources;
+      page.saved = saved;
+      page.listError = null;
+      chooseFirst(page);
+    } catch (error) {
+      page.listError = textOf(error);
+    }
+    this.changed();
+  }
+
+  /** Changes the form. */
+  set(change: Partial<CalibrationForm>): void {
+    Object.assign(this.page.form, change);
+    this.page.error = null;
+    this.changed();
+  }
+
+  async chooseName(name: string): Promise<void> {
+    const { form } = this.page;
+    form.names[form.kind] = name;
+    this.set({});
+    if (form.kind === 'scenario') await this.readCameras();
+  }
+
+  async begin(): Promise<void> {
+    const { page } = this;
+    const request = requestOf(page.form);
+    if ('error' in request) {
+      page.error = request.error;
+      this.changed();
+      return;
+    }
+    await this.request(async () => {
+      if (page.session !== null) await this.client.end(page.session.id).catch(() => undefined);
+      this.forget();
+      this.show(await this.client.begin(request.value));
+      this.poll();
+    });
+  }
+
+  async end(): Promise<void> {
+    const { session } = this.page;
+    if (session === null) return;
+    this.forget();
+    await this.request(() => this.client.end(session.id));
+  }
+
+  async control(control: SessionControl): Promise<void> {
+    const { session } = this.page;
+    if (session === null) return;
+    await this.request(async () => {
+      if (control.clear === true) this.page.selected = null;
+      this.show(await this.client.control(session.id, control));
+    });
+  }
+
+  /** Estimates the camera with the lens of the form. */
+  async solve(): Promise<void> {
+    const { session } = this.page;
+    if (session === null) return;
+    await this.solveWithout(session.views.filter((view) => view.left_out).map(({ view }) => view));
+  }
+
+  /** Leaves a view out of the estimate, or takes it in again. */
+  async toggleView(view: number): Promise<void> {
+    const { session } = this.page;
+    if (session === null) return;
+    const left = session.views.filter((one) => one.left_out !== (one.view === view));
+    await this.solveWithout(left.map((one) => one.view));
+  }
+
+  async select(view: number | null): Promise<void> {
+    const { page } = this;
+    page.selected = view;
+    this.changed();
+    await this.readDetail();
+  }
+
+  async send(files: readonly File[]): Promise<void> {
+    const { page } = this;
+    const { generation } = this;
+    if (page.session === null || !page.session.uploads) return;
+    const { id } = page.session;
+    page.sending = { done: 0, total: files.length };
+    this.changed();
+    for (const file of files) {
+      try {
+        await this.sendOne(id, file, generation);
+      } catch (error) {
+        if (this.generation === generation) page.error = `${file.name}: ${textOf(error)}`;
+        break;
+      }
+      if (this.generation !== generation) return;
+      page.sending.done += 1;
+      this.changed();
+    }
+    page.sending = null;
+    this.changed();
+  }
+
+  async save(name: string): Promise<void> {
+    const { page } = this;
+    const { session } = page;
+    page.name = name;
+    if (session === null) return;
+    await this.request(async () => {
+      await this.client.save(session.id, name);
+      page.saved = await this.client.saved();
+      this.notices.info(`Saved as ${name}.`);
+    });
+  }
+
+  async remove(name: string): Promise<void> {
+    await this.request(async () => {
+      await this.client.remove(name);
+      this.page.saved = await this.client.saved();
+    });
+  }
+
+  /** The chosen scenario of the launcher uses a saved calibration in its next flight. */
+  useInScenario(file: string, name: string): void {
+    const { state } = this.store;
+    if (state.scenarioDocument === null) {
+      this.notices.error('Choose a scenario in the launcher first.');
+      return;
+    }
+    const { section, value } = calibratedSection(state.scenarioDocument, file);
+    state.scenarioEdits.set(section, JSON.stringify(value, null, 2));
+    this.store.change('launch');
+    this.notices.info(`The next flight of ${state.scenarioName ?? 'the scenario'} uses ${name}.`);
+  }
+
+  fileUrl(name: string, format: string): string {
+    return this.client.fileUrl(name, format);
+  }
+
+  imageUrl(image: number): string {
+    const { session } = this.page;
+    return session === null ? '' : this.client.imageUrl(session.id, image);
+  }
+
+  /** Goes on with a session that a reloaded page has lost. */
+  private async resume(): Promise<void> {
+    const { generation } = this;
+    if (this.page.session === null) {
+      try {
+        const session = (await this.client.sessions()).at(-1);
+        if (session !== undefined && this.generation === generation) this.show(session);
+      } catch {
+        return;
+      }
+    }
+    this.poll();
+  }
+
+  private async readCameras(): Promise<void> {
+    const { page } = this;
+    const name = page.form.names.scenario;
+    page.cameras = null;
+    if (name === '') return;
+    try {
+      const cameras = camerasOf(await this.scenarios.scenario(name));
+      if (page.form.names.scenario !== name) return;
+      page.cameras = cameras;
+      page.form.camera = cameras[0] ?? '';
+    } catch (error) {
+      page.error = textOf(error);
+    }
+    this.changed();
+  }
+
+  private async solveWithout(left: number[]): Promise<void> {
+    const { session, form } = this.page;
+    if (session === null) return;
+    await this.request(async () => {
+      this.show(await this.client.solve(session.id, lensOf(form), left));
+    });
+  }
+
+  private async sendOne(id: string, file: File, generation: number): Promise<void> {
+    for (;;) {
+      try {
+        await this.client.uploadImage(id, file.name, file);
+        return;
+      } catch (error) {
+        const full = error instanceof RestError && error.code === 'too_many_images';
+        if (!full || this.generation !== generation) throw error;
+        await new Promise<void>((resolve) => this.later(resolve, kUploadPause_ms));
+      }
+    }
+  }
+
+  private poll(): void {
+    if (this.polling) return;
+    this.polling = true;
+    const turn = async () => {
+      const { page } = this;
+      if (!page.open || page.session === null) {
+        this.polling = false;
+        return;
+      }
+      await this.ask();
+      this.later(() => void turn(), this.isBusy() ? kLivePeriod_ms : kQuietPeriod_ms);
+    };
+    void turn();
+  }
+
+  private isBusy(): boolean {
+    const { session } = this.page;
+    return session?.phase === 'taking' || session?.phase === 'solving';
+  }
+
+  private async ask(): Promise<void> {
+    const { page, generation } = this;
+    if (page.session === null) return;
+    try {
+      const session = await this.client.session(page.session.id, page.session.revision);
+      if (this.generation !== generation) return;
+      if (session !== null) this.show(session);
+      await this.readSolution();
+    } catch (error) {
+      if (this.generation !== generation) return;
+      if (error instanceof RestError && error.status === 404) {
+        this.forget();
+        page.error = 'The calibration was closed by the server.';
+      } else {
+        page.error = textOf(error);
+      }
+      this.changed();
+    }
+  }
+
+  private async readSolution(): Promise<void> {
+    const { page, generation } = this;
+    const { session } = page;
+    if (session === null || session.solution === (page.solution?.solution ?? null)) return;
+    const solution = session.solution === null ? null : await this.client.solution(session.id);
+    if (this.generation !== generation) return;
+    page.solution = solution;
+    this.changed();
+    await this.readDetail();
+  }
+
+  private async readDetail(): Promise<void> {
+    const { page, generation } = this;
+    const { session, selected } = page;
+    page.detail = null;
+    if (session === null || selected === null) return;
+    try {
+      const detail = await this.client.view(session.id, selected);
+      if (this.generation !== generation || page.selected !== selected) return;
+      page.detail = detail;
+    } catch {
+      page.selected = null;
+    }
+    this.changed();
+  }
+
+  private show(session: CalibrationSession): void {
+    this.page.session = session;
+    this.changed();
+  }
+
+  private forget(): void {
+    this.generation += 1;
+    Object.assign(this.page, {
+      session: null,
+      solution: null,
+      selected: null,
+      detail: null,
+      sending: null,
+    });
+    this.changed();
+  }
+
+  private async request(action: () => Promise<unknown>): Promise<void> {
+    const { page } = this;
+    page.busy = true;
+    page.error = null;
+    this.changed();
+    try {
+      await action();
+    } catch (error) {
+      page.error = textOf(error);
+    }
+    page.busy = false;
+    this.changed();
+  }
+
+  private get page(): CalibrationPage {
+    return this.store.state.calibrationPage;
+  }
+
+  private changed(): void {
+    this.store.change('calibration');
+  }
+}
+
+/** Names of a scenario's cameras, the main one first. */
+export function camerasOf(document: JsonObject): string[] {
+  const several = document['cameras'];
+  const cameras = Array.isArray(several) ? several : [document['camera'] ?? {}];
+  return cameras.map((camera) => {
+    const name =
+      typeof camera === 'object' && camera !== null && !Array.isArray(camera)
+        ? camera['name']
+        : undefined;
+    return typeof name === 'string' ? name : 'camera0';
+  });
+}
+
+function chooseFirst({ sources, form }: CalibrationPage): void {
+  const lists = {
+    folder: sources?.folders,
+    recording: sources?.recordings,
+    camera: sources?.cameras,
+  };
+  for (const [kind, list] of Object.entries(lists)) {
+    const names = form.names as Record<string, string>;
+    if (!list?.some(({ name }) => name === names[kind])) names[kind] = list?.[0]?.name ?? '';
+  }
+}
+
+function textOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

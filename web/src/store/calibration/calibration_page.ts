@@ -1,0 +1,52 @@
+// State of the page that calibrates a camera.
+import type {
+  CalibrationSession,
+  CalibrationSolution,
+  CalibrationSources,
+  SavedCalibration,
+  ViewDetail,
+} from '../../protocol/calibration_types';
+import type { CalibrationForm } from './calibration_form';
+import { initialForm } from './calibration_form';
+
+export interface CalibrationPage {
+  open: boolean;
+  /** null until read. */
+  sources: CalibrationSources | null;
+  saved: SavedCalibration[] | null;
+  /** Cameras of the chosen scenario; null until read. */
+  cameras: string[] | null;
+  listError: string | null;
+  form: CalibrationForm;
+  /** A request is on its way. */
+  busy: boolean;
+  error: string | null;
+  session: CalibrationSession | null;
+  solution: CalibrationSolution | null;
+  /** The view shown beside the newest image; null = the last one. */
+  selected: number | null;
+  detail: ViewDetail | null;
+  /** Name proposed for the result. */
+  name: string;
+  /** Files that are still to be sent. */
+  sending: { done: number; total: number } | null;
+}
+
+export function initialCalibrationPage(): CalibrationPage {
+  return {
+    open: false,
+    sources: null,
+    saved: null,
+    cameras: null,
+    listError: null,
+    form: initialForm(),
+    busy: false,
+    error: null,
+    session: null,
+    solution: null,
+    selected: null,
+    detail: null,
+    name: 'camera',
+    sending: null,
+  };
+}

@@ -1,0 +1,180 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { CalibrationClient } from '../../../src/connection/calibration_client';
+import { RestClient } from '../../../src/connection/rest_client';
+import type { CalibrationSession } from '../../../src/protocol/calibration_types';
+import { CalibrationDesk, camerasOf } from '../../../src/store/calibration/calibration_desk';
+import { Notices } from '../../../src/store/notices';
+import { Store } from '../../../src/store/state';
+import { sampleSession, sampleSolution } from '../../support/calibrations';
+
+interface Asked {
+  method: string;
+  url: string;
+  body: unknown;
+}
+
+let store: Store;
+let asked: Asked[];
+let session: CalibrationSession | null;
+let later: (() => void)[];
+let refusals: number;
+let desk: CalibrationDesk;
+
+const refusal = (status: number, code: string) =>
+  Response.json({ error: { code, message: code } }, { status });
+
+function answer(method: string, url: string): Response {
+  if (url === 'api/calibration-sources') {
+    const folders = [{ name: 'data/photos', images: 9 }];
+    const sources = { folders, recordings: [], cameras: [], keeps: true, complete: true };
+    return Response.json(sources);
+  }
+  if (url === 'api/calibrations' && method === 'GET') return Response.json({ calibrations: [] });
+  if (url === 'api/calibrations') return Response.json({ name: 'c', file: '/c.json' });
+  if (url.startsWith('api/scenarios/')) return Response.json({ cameras: [{ name: 'down' }] });
+  if (url === 'api/calibration-sessions' && method === 'GET') {
+    return Response.json({ sessions: session === null ? [] : [session] });
+  }
+  if (url === 'api/calibration-sessions') {
+    session = sampleSession();
+    return Response.json(session, { status: 201 });
+  }
+  if (session === null) return refusal(404, 'not_found');
+  if (url.includes('/images?')) {
+    refusals -= 1;
+    return refusals >= 0 ? refusal(429, 'too_many_images') : Response.json({}, { status: 202 });
+  }
+  if (url.endsWith('/solution') && method === 'GET') return Response.json(sampleSolution());
+  if (url.includes('/views/')) return Response.json({ view: 2, residuals: null });
+  if (url.includes(`revision=${session.revision}`)) return new Response(null, { status: 204 });
+  if (method === 'DELETE') {
+    session = null;
+    return new Response(null, { status: 204 });
+  }
+  return Response.json(session);
+}
+
+beforeEach(() => {
+  store = new Store();
+  store.state.scenarioName = 'course';
+  asked = [];
+  session = null;
+  later = [];
+  refusals = 0;
+  const rest = new RestClient('api', (url, init) => {
+    const method = init?.method ?? 'GET';
+    const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
+    asked.push({ method, url, body });
+    return Promise.resolve(answer(method, url));
+  });
+  const wait = (callback: () => void) => later.push(callback);
+  desk = new CalibrationDesk(
+    store,
+    new CalibrationClient(rest),
+    rest,
+    new Notices(store, () => 0),
+    wait,
+  );
+});
+
+const page = () => store.state.calibrationPage;
+const settle = () => new Promise((resolve) => setTimeout(resolve, 0));
+/** Lets the desk ask again. */
+async function turn(): Promise<void> {
+  for (const callback of later.splice(0)) callback();
+  await settle();
+}
+
+describe('CalibrationDesk', () => {
+  it('opens with the sources, the scenario of the launcher and its cameras', async () => {
+    await desk.open();
+    expect(page().open).toBe(true);
+    expect(page().form.names).toMatchObject({ scenario: 'course', folder: 'data/photos' });
+    expect(page().cameras).toEqual(['down']);
+    expect(page().form.camera).toBe('down');
+    expect(page().session).toBeNull();
+  });
+
+  it('goes on with a session that the page has lost', async () => {
+    session = sampleSession();
+    await desk.open();
+    expect(page().session?.id).toBe('s1');
+  });
+
+  it('follows a session and reads its estimate when there is one', async () => {
+    await desk.open();
+    await desk.begin();
+    await settle();
+    expect(page().session?.phase).toBe('taking');
+    session = sampleSession({ revision: 6, phase: 'waiting', solution: 1 });
+    await turn();
+    expect(page().session?.revision).toBe(6);
+    expect(page().solution?.rms_px).toBe(0.05);
+  });
+
+  it('says what is wrong with the form and asks for nothing', async () => {
+    await desk.open();
+    desk.set({ cols: '7', rows: '7' });
+    await desk.begin();
+    expect(page().error).toContain('half a turn');
+    expect(asked.filter(({ method }) => method === 'POST')).toEqual([]);
+  });
+
+  it('leaves a view out of the next estimate, or takes it in again', async () => {
+    await desk.open();
+    await desk.begin();
+    await desk.toggleView(0);
+    expect(asked.at(-1)?.body).toEqual({ model: 'radtan', k3: false, left_out: [0, 1] });
+    await desk.toggleView(1);
+    expect(asked.at(-1)?.body).toMatchObject({ left_out: [] });
+    desk.set({ model: 'equidistant' });
+    await desk.solve();
+    expect(asked.at(-1)?.body).toMatchObject({ model: 'equidistant', left_out: [1] });
+  });
+
+  it('sends images one by one and waits while the server has enough', async () => {
+    await desk.open();
+    await desk.begin();
+    page().session = sampleSession({ uploads: true });
+    session = page().session;
+    refusals = 1;
+    const sending = desk.send([new File(['x'], 'a.png'), new File(['y'], 'b.png')]);
+    await settle();
+    await turn();
+    await sending;
+    const urls = asked.filter(({ url }) => url.includes('/images?')).map(({ url }) => url);
+    expect(urls.map((url) => url.slice(-5))).toEqual(['a.png', 'a.png', 'b.png']);
+    expect(page().sending).toBeNull();
+    expect(page().error).toBeNull();
+  });
+
+  it('tells when the server has closed the session', async () => {
+    await desk.open();
+    await desk.begin();
+    await settle();
+    session = null;
+    await turn();
+    expect(page().session).toBeNull();
+    expect(page().error).toContain('closed');
+  });
+
+  it('saves the result and uses it in the next flight', async () => {
+    await desk.open();
+    await desk.begin();
+    await desk.save('front');
+    const saved = asked.find(({ url, method }) => url === 'api/calibrations' && method === 'POST');
+    expect(saved?.body).toEqual({ session: 's1', name: 'front' });
+    store.state.scenarioDocument = { camera: { fov_deg: 80, rate_hz: 31 } };
+    desk.useInScenario('/up/front.json', 'front');
+    const edit = store.state.scenarioEdits.get('camera') ?? '';
+    expect(JSON.parse(edit)).toEqual({ calibration: '/up/front.json', rate_hz: 31 });
+  });
+});
+
+describe('camerasOf', () => {
+  it('names the cameras of a scenario', () => {
+    expect(camerasOf({ camera: { name: 'a' } })).toEqual(['a']);
+    expect(camerasOf({ cameras: [{ name: 'a' }, { name: 'b' }] })).toEqual(['a', 'b']);
+    expect(camerasOf({})).toEqual(['camera0']);
+  });
+});
