@@ -320,7 +320,9 @@ void WebSocketSession::draw(const PictureTicket& ticket, const server::PictureRe
       });
     });
   };
-  context_->views.request(number_, static_cast<int>(ticket.stream_id), request, done);
+  server::PictureRequest drawn = request;
+  if (drawn.video) drawn.video->viewer = number_;
+  context_->views.request(number_, static_cast<int>(ticket.stream_id), drawn, done);
 }
 
 void WebSocketSession::picture_ready(const PictureTicket& ticket,

@@ -1,7 +1,6 @@
 #include "server/record/run_folder.hpp"
 
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -52,21 +51,6 @@ fs::path debug_image_file(const fs::path& folder,
                           const std::string& estimator,
                           std::int64_t frame) {
   return folder / "debug" / estimator / numbered_jpg(frame);
-}
-
-std::optional<std::int64_t> last_recorded_frame(const fs::path& folder, std::int64_t frame) {
-  std::optional<std::int64_t> last;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().stem().string();
-    std::int64_t number = 0;
-    const char* name_end = name.data() + name.size();
-    const auto [rest, failure] = std::from_chars(name.data(), name_end, number);
-    if (failure != std::errc() || rest != name_end || number > frame) continue;
-    if (!last || number > *last) last = number;
-  }
-  return last;
 }
 
 fs::path map_points_file(const fs::path& folder, const std::string& estimator, std::int64_t frame) {

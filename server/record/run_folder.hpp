@@ -34,9 +34,6 @@ inline constexpr int kRunFormatVersion = 1;
 [[nodiscard]] std::filesystem::path debug_image_file(const std::filesystem::path& folder,
                                                      const std::string& estimator,
                                                      std::int64_t frame);
-/// Number of the last file NNNNNN.* in a folder at or before `frame`; empty if there is none.
-[[nodiscard]] std::optional<std::int64_t> last_recorded_frame(const std::filesystem::path& folder,
-                                                              std::int64_t frame);
 /// points/NAME/NNNNNN.bin
 [[nodiscard]] std::filesystem::path map_points_file(const std::filesystem::path& folder,
                                                     const std::string& estimator,

@@ -63,6 +63,14 @@ struct ErrorOf {
   std::optional<std::size_t> estimator;
 };
 
+/// The pictures of a stream that are sent as video: each but the key pictures needs the one before.
+struct VideoChain {
+  std::uint64_t viewer = 0;
+  std::uint32_t stream = 0;    ///< of the viewer
+  std::uint64_t pictures = 0;  ///< of this chain that the client has got
+  bool key = false;            ///< the next one must be a key picture
+};
+
 struct PictureRequest {
   std::string run_id;
   enum class Kind { kCamera, kDebug, kScene, kDepth, kError } kind = Kind::kCamera;
@@ -77,7 +85,12 @@ struct PictureRequest {
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
   int max_width_px = 1280;               ///< all but scenes are halved until they fit
+  /// Encodes the picture as video; it becomes a JPEG nevertheless if it was recorded as one, or if
+  /// too many streams are encoded already.
+  std::optional<VideoChain> video;
 };
+
+enum class PictureCoding { kJpeg, kVp8 };
 
 /// The values at the ends of a picture's colours.
 struct ColourScale {
@@ -105,6 +118,8 @@ struct Picture {
   int full_width_px = 0;  ///< of the image before it was reduced
   int full_height_px = 0;
   bool grey = false;
+  PictureCoding coding = PictureCoding::kJpeg;
+  bool key = true;                   ///< does not need the picture before
   std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
   std::vector<SceneLabel> labels;    ///< of a scene
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;

@@ -16,6 +16,19 @@ bool opens_frame(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
+/// All but its coding.
+Picture picture_of(const StampedImage& image, const Image& fitting) {
+  Picture picture;
+  picture.frame = image.frame;
+  picture.t_ns = image.t_ns;
+  picture.width_px = fitting.width_px;
+  picture.height_px = fitting.height_px;
+  picture.full_width_px = image.image->width_px;
+  picture.full_height_px = image.image->height_px;
+  picture.grey = fitting.channels == 1;
+  return picture;
+}
+
 }  // namespace
 
 std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg) {
@@ -30,38 +43,44 @@ std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg) {
   return std::nullopt;
 }
 
-Result<Picture> PictureEncoder::encode(const StampedImage& image, int quality, int max_width_px) {
+Result<Picture> PictureEncoder::encode_jpeg_picture(const StampedImage& image,
+                                                    const PictureRequest& request) {
   const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-    return kept.image == image.image && kept.quality == quality &&
-           kept.max_width_px == max_width_px;
+    return kept.image == image.image && kept.quality == request.quality &&
+           kept.max_width_px == request.max_width_px;
   });
   if (known != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, known);
     return kept_.front().picture;
   }
-  const auto fitting = halved_to_fit(image.image, max_width_px);
-  auto jpeg = encode_jpeg(*fitting, quality);
+  const auto fitting = halved_to_fit(image.image, request.max_width_px);
+  auto jpeg = encode_jpeg(*fitting, request.quality);
   if (!jpeg) return jpeg.error();
-  Picture picture;
-  picture.frame = image.frame;
-  picture.t_ns = image.t_ns;
-  picture.width_px = fitting->width_px;
-  picture.height_px = fitting->height_px;
-  picture.full_width_px = image.image->width_px;
-  picture.full_height_px = image.image->height_px;
-  picture.grey = fitting->channels == 1;
+  Picture picture = picture_of(image, *fitting);
   picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(*jpeg));
-  kept_.push_front({image.image, quality, max_width_px, picture});
+  kept_.push_front({image.image, request.quality, request.max_width_px, picture});
   if (kept_.size() > kMaxKept) kept_.pop_back();
+  return picture;
+}
+
+Result<Picture> PictureEncoder::encode(const StampedImage& image, const PictureRequest& request) {
+  if (!request.video) return encode_jpeg_picture(image, request);
+  const auto fitting = halved_to_fit(image.image, request.max_width_px);
+  auto packet = video_.encode(*request.video, *fitting, request.quality);
+  if (!packet) return packet.error();
+  if (!*packet) return encode_jpeg_picture(image, request);
+  Picture picture = picture_of(image, *fitting);
+  picture.coding = PictureCoding::kVp8;
+  picture.key = (*packet)->key;
+  picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move((*packet)->bytes));
   return picture;
 }
 
 Result<Picture> PictureEncoder::encode(const StampedImage& image,
                                        const ColourScale& scale,
                                        const PinholeCamera& camera,
-                                       int quality,
-                                       int max_width_px) {
-  Result<Picture> picture = encode(image, quality, max_width_px);
+                                       const PictureRequest& request) {
+  Result<Picture> picture = encode(image, request);
   if (!picture) return picture;
   picture->full_width_px = camera.width_px;
   picture->full_height_px = camera.height_px;
@@ -72,13 +91,12 @@ Result<Picture> PictureEncoder::encode(const StampedImage& image,
 Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
                                             std::int64_t frame,
                                             std::int64_t t_ns,
-                                            int quality,
-                                            int max_width_px) {
+                                            const PictureRequest& request) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
   auto bytes = read_file_bytes(file, kMaxBytes);
   if (!bytes) return bytes.error();
   const auto size = jpeg_size(*bytes);
-  if (size && size->width_px <= max_width_px) {
+  if (size && size->width_px <= request.max_width_px) {
     Picture picture;
     picture.frame = frame;
     picture.t_ns = t_ns;
@@ -90,8 +108,7 @@ Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
   }
   auto image = decode_jpeg(*bytes);
   if (!image) return image.error().in(file.string());
-  return encode(
-      {frame, t_ns, std::make_shared<const Image>(std::move(*image))}, quality, max_width_px);
+  return encode({frame, t_ns, std::make_shared<const Image>(std::move(*image))}, request);
 }
 
 }  // namespace overfly::server

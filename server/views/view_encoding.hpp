@@ -11,6 +11,7 @@
 #include "core/camera/camera.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/picture_request.hpp"
+#include "server/views/video/video_encoders.hpp"
 
 namespace overfly::server {
 
@@ -23,23 +24,21 @@ struct JpegSize {
 };
 [[nodiscard]] std::optional<JpegSize> jpeg_size(const std::vector<std::uint8_t>& jpeg);
 
-/// Encodes, and caches the last few results, so that two viewers of a live camera need one
-/// encoding. Not thread-safe.
+/// Encodes as the request says: as JPEG, of which the last few are cached, so that two viewers of a
+/// live camera need one encoding; or as video. Not thread-safe.
 class PictureEncoder {
  public:
-  [[nodiscard]] Result<Picture> encode(const StampedImage& image, int quality, int max_width_px);
+  [[nodiscard]] Result<Picture> encode(const StampedImage& image, const PictureRequest& request);
   /// An image of a quantity, drawn from a camera's image of the given size.
   [[nodiscard]] Result<Picture> encode(const StampedImage& image,
                                        const ColourScale& scale,
                                        const PinholeCamera& camera,
-                                       int quality,
-                                       int max_width_px);
+                                       const PictureRequest& request);
   /// A recorded JPEG; unchanged if it fits.
   [[nodiscard]] Result<Picture> encode_file(const std::filesystem::path& file,
                                             std::int64_t frame,
                                             std::int64_t t_ns,
-                                            int quality,
-                                            int max_width_px);
+                                            const PictureRequest& request);
 
  private:
   struct Kept {
@@ -48,7 +47,10 @@ class PictureEncoder {
     int max_width_px = 0;
     Picture picture;
   };
+  [[nodiscard]] Result<Picture> encode_jpeg_picture(const StampedImage& image,
+                                                    const PictureRequest& request);
   std::list<Kept> kept_;
+  VideoEncoders video_;
 };
 
 }  // namespace overfly::server

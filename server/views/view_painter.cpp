@@ -41,8 +41,6 @@ std::optional<FrameRow> row_of(const RunTimeline& timeline,
   return timeline.frame_at(std::numeric_limits<std::int64_t>::max(), camera);
 }
 
-}
-
 }  // namespace
 
 ViewPainter::Painted ViewPainter::paint(const PictureRequest& request) {
@@ -118,7 +116,9 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   auto image = (*view)->renderer->render_scene(scene, content);
   if (!image) return image.error();
   const auto shared = std::make_shared<const Image>(std::move(*image));
-  auto picture = encoder_.encode({row.frame, row.t_ns, shared}, request.quality, shared->width_px);
+  PictureRequest coding = request;
+  coding.max_width_px = shared->width_px;
+  auto picture = encoder_.encode({row.frame, row.t_ns, shared}, coding);
   if (!picture) return picture.error();
   if (settings.show.labels) picture->labels = labels_in_view(places, scene, tiles);
   return std::optional(std::move(*picture));
@@ -160,10 +160,7 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     if (request.live) {
       points = timeline.live_points(i);
     } else if (const auto& alignment = ribbons.alignment_of(i); folder && alignment) {
-      const auto last = [this](const auto& points_folder, std::int64_t frame) {
-        return numbers_.last(points_folder, frame);
-      };
-      points = recorded_points(*folder, timeline, i, *alignment, row, last);
+      points = recorded_points(*folder, numbers_, timeline, i, *alignment, row);
     }
     all.insert(all.end(), points.begin(), points.end());
   }

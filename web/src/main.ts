@@ -26,6 +26,7 @@ import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { CalibrationDesk } from './store/calibration/calibration_desk';
 import { Cameras } from './store/pictures/cameras';
+import { openVideo, videoWorks } from './store/pictures/video_decoding';
 import { PixelProbe } from './store/pictures/pixel_probe';
 import { Catalogue } from './store/catalogue';
 import { Layouts } from './store/layouts/layouts';
@@ -57,7 +58,14 @@ const newKey = () =>
 
 const store = new Store();
 const notices = new Notices(store, later);
-const session = new Session(store, notices, (jpeg) => createImageBitmap(jpeg));
+const session = new Session(
+  store,
+  notices,
+  (jpeg) => createImageBitmap(jpeg),
+  openVideo,
+  () => performance.now(),
+);
+void videoWorks().then((works) => session.useVideo(works));
 const rest: RestClient = new RestClient(
   'api/v1',
   (url, init) => fetch(url, init),

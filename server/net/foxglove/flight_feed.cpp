@@ -187,13 +187,14 @@ void FlightFeed::read_points(std::size_t estimator, const server::FrameRow& row)
   port_.work([this,
               timeline = timeline_,
               folder_of = folder_of_,
+              numbers = points.numbers,
               estimator,
               row,
               place = *place,
               jumps = jumps_]() -> std::function<void()> {
     std::vector<Eigen::Vector3f> read;
     if (const auto folder = folder_of(timeline->info().id)) {
-      read = server::recorded_points(*folder, *timeline, estimator, place, row);
+      read = server::recorded_points(*folder, *numbers, *timeline, estimator, place, row);
     }
     return [this, estimator, jumps, t_ns = row.t_ns, read = std::move(read)] {
       points_[estimator].reading = false;

@@ -17,6 +17,7 @@
 #include "server/net/foxglove/subscriptions.hpp"
 #include "server/net/stream/playback_clock.hpp"
 #include "server/net/stream/viewer_port.hpp"
+#include "server/record/recorded_numbers.hpp"
 
 namespace overfly::net::foxglove {
 
@@ -69,6 +70,8 @@ class FlightFeed {
   struct Points {
     std::int64_t frame = -1;  ///< sent last, or being read
     bool reading = false;
+    /// Used by one thread at a time, because only one reads.
+    std::shared_ptr<server::RecordedNumbers> numbers = std::make_shared<server::RecordedNumbers>();
     std::vector<Eigen::Vector3f> sent;
   };
   [[nodiscard]] bool ready() const { return messages_.has_epoch() && messages_.check_epoch(); }

@@ -133,6 +133,12 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));
   stream.max_width_px =
       static_cast<int>(fields.integer("max_width_px", 16, 8192).value_or(stream.max_width_px));
+  if (const auto encoding = fields.text("encoding")) {
+    stream.video = *encoding == "vp8";
+    if (!stream.video && *encoding != "jpeg") {
+      fields.reject("encoding", " = \"" + *encoding + "\": must be \"jpeg\" or \"vp8\"");
+    }
+  }
   if (const Status status = fields.finish(); !status) return status.error();
   return stream;
 }
@@ -143,6 +149,7 @@ bool same_stream(const StreamRequest& a, const StreamRequest& b) {
 
 ClientCommand read_subscribe(JsonFields* fields) {
   SubscribeCommand command;
+  command.acknowledges = fields->boolean("acknowledge").value_or(false);
   fields->require("pictures");
   const json* pictures = fields->array("pictures");
   if (pictures == nullptr) return command;
@@ -210,6 +217,34 @@ std::optional<server::SceneShow> read_show(JsonFields* fields) {
     show.*(part->second) = true;
   }
   return show;
+}
+
+ClientCommand read_shown(JsonFields* fields) {
+  ShownCommand command;
+  fields->require("pictures");
+  const json* pictures = fields->array("pictures");
+  if (pictures == nullptr) return command;
+  if (pictures->size() > kMaxStreams) {
+    fields->reject("pictures", ": must have at most " + std::to_string(kMaxStreams) + " entries");
+    return command;
+  }
+  constexpr std::uint64_t kMost = 0xFFFFFFFFU;
+  for (const json& entry : *pictures) {
+    const auto number = [&](std::size_t at) { return entry[at].get<std::uint64_t>(); };
+    if (!entry.is_array() || entry.size() != 2 || !entry[0].is_number_unsigned() ||
+        !entry[1].is_number_unsigned() || number(0) > kMost || number(1) > kMost) {
+      fields->reject("pictures", ": " + to_text(entry) + ": must be [stream, sequence]");
+      return command;
+    }
+    command.pictures.emplace_back(static_cast<std::uint32_t>(number(0)),
+                                  static_cast<std::uint32_t>(number(1)));
+  }
+  return command;
+}
+
+ClientCommand read_key(JsonFields* fields) {
+  fields->require("id");
+  return KeyCommand{static_cast<std::uint32_t>(fields->integer("id", 0, 0xFFFFFFFFLL).value_or(0))};
 }
 
 /// The viewpoint of the mode "free".
@@ -313,6 +348,8 @@ const std::map<std::string, std::function<ClientCommand(JsonFields*)>>& readers(
       {"watch", read_watch},
       {"unwatch", read_unwatch},
       {"subscribe", read_subscribe},
+      {"shown", read_shown},
+      {"key", read_key},
       {"view", read_view},
       {"play", read_plain<PlayCommand>},
       {"pause", read_plain<PauseCommand>},

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct StreamRequest {
   double max_hz = 31.0;
   int quality = 75;
   int max_width_px = 1280;
+  bool video = false;               ///< may be sent as VP8
   std::string camera = {};          ///< for "camera", "depth", "error"; empty = the run's first
   std::string view = {};            ///< for the stream "scene": the name of its view
   std::size_t first_colour = 0;     ///< likewise: index of the first estimator's colour
@@ -53,6 +55,15 @@ struct UnwatchCommand {
 };
 struct SubscribeCommand {
   std::vector<StreamRequest> pictures;
+  bool acknowledges = false;  ///< the client reports which pictures it has shown
+};
+/// Pictures that the client has shown: stream number and sequence number of the newest.
+struct ShownCommand {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pictures;
+};
+/// Asks for a key picture, because one of the chain was lost.
+struct KeyCommand {
+  std::uint32_t stream_id = 0;
 };
 /// Empty fields keep their present value.
 struct ViewCommand {
@@ -99,6 +110,8 @@ struct AlignCommand {
 using ClientCommand = std::variant<WatchCommand,
                                    UnwatchCommand,
                                    SubscribeCommand,
+                                   ShownCommand,
+                                   KeyCommand,
                                    ViewCommand,
                                    PlayCommand,
                                    PauseCommand,

@@ -10,6 +10,7 @@ constexpr std::uint16_t kTypePicture = 1;
 constexpr std::uint32_t kFlagLive = 1U;
 constexpr std::uint32_t kFlagScale = 2U;
 constexpr std::uint32_t kFlagLogarithmic = 4U;
+constexpr std::uint32_t kFlagKey = 8U;
 
 // Offsets in the header.
 constexpr std::size_t kMagicAt = 0;
@@ -63,7 +64,7 @@ std::array<std::uint8_t, kPictureHeaderBytes> encode_picture_header(const Pictur
   put(&bytes, kEncodingAt, static_cast<std::uint16_t>(header.encoding));
   put(&bytes, kHeaderLengthAt, static_cast<std::uint16_t>(kPictureHeaderBytes));
   put(&bytes, kPayloadLengthAt, header.payload_bytes);
-  std::uint32_t flags = header.live ? kFlagLive : 0U;
+  std::uint32_t flags = (header.live ? kFlagLive : 0U) | (header.key ? kFlagKey : 0U);
   if (header.scale) {
     flags |= kFlagScale | (header.scale->logarithmic ? kFlagLogarithmic : 0U);
     put(&bytes, kScaleLowAt, std::bit_cast<std::uint32_t>(header.scale->low));
@@ -82,7 +83,7 @@ std::optional<PictureHeader> decode_picture_header(std::span<const std::uint8_t>
   if (get<std::uint16_t>(message, kTypeAt) != kTypePicture) return std::nullopt;
   if (get<std::uint16_t>(message, kHeaderLengthAt) != kPictureHeaderBytes) return std::nullopt;
   const auto encoding = get<std::uint16_t>(message, kEncodingAt);
-  if (encoding != 1 && encoding != 2) return std::nullopt;
+  if (encoding < 1 || encoding > 3) return std::nullopt;
   PictureHeader header;
   header.stream_id = get<std::uint32_t>(message, kStreamAt);
   header.sequence = get<std::uint32_t>(message, kSequenceAt);
@@ -94,6 +95,7 @@ std::optional<PictureHeader> decode_picture_header(std::span<const std::uint8_t>
   header.payload_bytes = get<std::uint32_t>(message, kPayloadLengthAt);
   const auto flags = get<std::uint32_t>(message, kFlagsAt);
   header.live = (flags & kFlagLive) != 0;
+  header.key = (flags & kFlagKey) != 0;
   if ((flags & kFlagScale) != 0) {
     header.scale = {std::bit_cast<float>(get<std::uint32_t>(message, kScaleLowAt)),
                     std::bit_cast<float>(get<std::uint32_t>(message, kScaleHighAt)),

@@ -12,7 +12,7 @@ inline constexpr std::size_t kPictureHeaderBytes = 60;
 inline constexpr std::uint32_t kPictureMagic = 0x4C46564FU;  ///< "OVFL" in little-endian bytes
 inline constexpr std::uint16_t kPictureVersion = 2;
 
-enum class PictureEncoding : std::uint16_t { kJpegGrey = 1, kJpegColour = 2 };
+enum class PictureEncoding : std::uint16_t { kJpegGrey = 1, kJpegColour = 2, kVp8 = 3 };
 
 struct PictureHeader {
   std::uint32_t stream_id = 0;
@@ -24,6 +24,7 @@ struct PictureHeader {
   PictureEncoding encoding = PictureEncoding::kJpegColour;
   std::uint32_t payload_bytes = 0;
   bool live = false;
+  bool key = true;  ///< does not need the video picture before
   /// The values at the ends of the colours, of depth and error pictures.
   struct Scale {
     float low = 0.0F;

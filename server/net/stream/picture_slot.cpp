@@ -11,13 +11,20 @@ constexpr std::int64_t kChangePeriodNs = 30'000'000;
 
 }  // namespace
 
+std::int64_t PictureSlot::ready_ns() const {
+  if (!taken_ || taken_->change == wanted_->change) return due_ns_;
+  const std::int64_t change_ns = std::max(std::min(period_ns_, kChangePeriodNs), least_period_ns_);
+  return std::min(due_ns_, taken_at_ns_ + change_ns);
+}
+
+bool PictureSlot::blocked(std::int64_t now_ns) const {
+  return wanted_ && wanted_ != taken_ && (window_full() || sending_) && now_ns >= ready_ns();
+}
+
 std::optional<PictureKey> PictureSlot::take(std::int64_t now_ns) {
-  if (!waiting()) return std::nullopt;
+  if (!waiting() || window_full() || now_ns < ready_ns()) return std::nullopt;
   const bool changed = taken_ && taken_->change != wanted_->change;
   const std::int64_t period_ns = std::max(period_ns_, least_period_ns_);
-  const std::int64_t change_ns = std::max(std::min(period_ns_, kChangePeriodNs), least_period_ns_);
-  const std::int64_t ready_ns = changed ? std::min(due_ns_, taken_at_ns_ + change_ns) : due_ns_;
-  if (now_ns < ready_ns) return std::nullopt;
   // Measured from the time it was due, so that late ticks do not lower the rate.
   const bool on_time = !changed && now_ns - due_ns_ < period_ns;
   due_ns_ = (on_time ? due_ns_ : now_ns) + period_ns;

@@ -12,6 +12,7 @@ struct PictureKey {
   std::int64_t frame = -1;
   std::uint64_t change = 0;  ///< increases with each seek, subscription and change of the view
   std::int64_t others = 0;   ///< sum of the frames of other runs that it shows
+  bool full = false;         ///< again with all details, after a reduced one that moved
   bool operator==(const PictureKey&) const = default;
 };
 
@@ -27,10 +28,19 @@ class PictureSlot {
   /// Sets what the client should see now; only the latest call counts.
   void want(const PictureKey& key) { wanted_ = key; }
   /// The picture to draw now, which is then in flight. Empty while one is in flight, if the client
-  /// already has this one, and until the stream's period has passed.
+  /// already has this one, until the stream's period has passed, and while too many are unshown.
   [[nodiscard]] std::optional<PictureKey> take(std::int64_t now_ns);
+  /// True if a picture is due, and waits because one before is still being sent, or because the
+  /// client has not shown those before.
+  [[nodiscard]] bool blocked(std::int64_t now_ns) const;
+  /// The picture in flight is drawn and on its way.
+  void sending() { sending_ = true; }
   /// The picture in flight has been sent or dropped.
-  void done() { in_flight_ = false; }
+  void done() { in_flight_ = sending_ = false; }
+  /// Pictures that a client who reports what it shows may have got and not shown; 0 = it does not.
+  void set_window(int pictures) { window_ = pictures; }
+  void set_unshown(int pictures) { unshown_ = pictures; }
+  [[nodiscard]] bool window_full() const { return window_ > 0 && unshown_ >= window_; }
   /// The picture in flight shows a newer frame than requested (as a live one does).
   void answered_with(std::int64_t frame) {
     if (taken_ && frame > taken_->frame) taken_->frame = frame;
@@ -43,6 +53,9 @@ class PictureSlot {
  private:
   static std::int64_t period_of(double max_hz) { return static_cast<std::int64_t>(1e9 / max_hz); }
 
+  /// When the wanted picture may be drawn at the earliest.
+  [[nodiscard]] std::int64_t ready_ns() const;
+
   std::int64_t period_ns_;
   std::int64_t least_period_ns_ = 0;
   std::optional<PictureKey> wanted_;
@@ -50,6 +63,9 @@ class PictureSlot {
   std::int64_t due_ns_ = 0;
   std::int64_t taken_at_ns_ = 0;
   bool in_flight_ = false;
+  bool sending_ = false;
+  int window_ = 0;
+  int unshown_ = 0;
 };
 
 }  // namespace overfly::net

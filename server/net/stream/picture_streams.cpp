@@ -15,6 +15,12 @@ using server::PictureRequest;
 /// Numbers of streams that are not subscribed any more are kept up to this count, so that a stream
 /// that comes back keeps its number.
 constexpr std::size_t kMaxKnownStreams = 1024;
+/// After this time a picture counts as shown.
+constexpr std::int64_t kShownByNs = 5'000'000'000;
+/// A view that was changed so recently is being moved.
+constexpr std::int64_t kViewMovesNs = 300'000'000;
+/// Pictures are not reduced below this quality, unless the client asks for it.
+constexpr int kLeastQuality = 30;
 
 PictureRequest::Kind kind_of(const std::string& name) {
   if (name == "camera") return PictureRequest::Kind::kCamera;
@@ -28,6 +34,11 @@ PictureRequest::Kind kind_of(const std::string& name) {
 std::string estimator_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(slash + 1);
+}
+
+PictureEncoding encoding_of(const server::Picture& picture) {
+  if (picture.coding == server::PictureCoding::kVp8) return PictureEncoding::kVp8;
+  return picture.grey ? PictureEncoding::kJpegGrey : PictureEncoding::kJpegColour;
 }
 
 /// Where the aircraft are in the picture that follows.
@@ -55,11 +66,12 @@ PictureStreams::StreamKey PictureStreams::key_of(const StreamRequest& request) {
   return {request.run_id, request.name, request.camera, request.view};
 }
 
-void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
+void PictureStreams::subscribe(const SubscribeCommand& command) {
+  acknowledges_ = command.acknowledges;
   std::vector<Stream> before = std::move(streams_);
   streams_.clear();
   for (const Stream& stream : before) sequences_[key_of(stream.request)] = stream.sequence;
-  for (const StreamRequest& requested : requests) {
+  for (const StreamRequest& requested : command.pictures) {
     const auto kept = std::find_if(before.begin(), before.end(), [&](const Stream& stream) {
       return key_of(stream.request) == key_of(requested);
     });
@@ -73,6 +85,10 @@ void PictureStreams::subscribe(const std::vector<StreamRequest>& requests) {
     stream.request = requested;
     stream.slot.set_max_hz(requested.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
+    stream.slot.set_window(acknowledges_ ? kWindow : 0);
+    // Pictures of an earlier subscription need not be shown any more.
+    if (kept == before.end() && stream.sequence > 0) stream.shown = stream.sequence - 1;
+    count_unshown(&stream);
     streams_.push_back(std::move(stream));
   }
   forget_old_streams();
@@ -86,7 +102,36 @@ void PictureStreams::forget_old_streams() {
   std::erase_if(sequences_, [&](const auto& entry) { return !subscribed.contains(entry.first); });
 }
 
-Status PictureStreams::set_view(const ViewCommand& command) {
+void PictureStreams::count_unshown(Stream* stream) {
+  const std::uint32_t shown = stream->shown ? *stream->shown + 1 : 0;
+  stream->slot.set_unshown(static_cast<int>(stream->sequence - shown));
+}
+
+void PictureStreams::shown(const ShownCommand& command) {
+  for (const auto& [id, sequence] : command.pictures) {
+    for (Stream& stream : streams_) {
+      if (stream.id != id || sequence >= stream.sequence) continue;
+      stream.shown = std::max(stream.shown.value_or(0), sequence);
+      count_unshown(&stream);
+    }
+  }
+}
+
+Status PictureStreams::restart_video(const KeyCommand& command) {
+  for (Stream& stream : streams_) {
+    if (stream.id != command.stream_id) continue;
+    stream.key_wanted = true;
+    return {};
+  }
+  return Error{ErrorCode::kNotFound,
+               "key.id = " + std::to_string(command.stream_id) + ": is no subscribed stream"};
+}
+
+bool PictureStreams::reduction_changed() {
+  return std::exchange(reduction_told_, link_.reduction()) != link_.reduction();
+}
+
+Status PictureStreams::set_view(const ViewCommand& command, std::int64_t now_ns) {
   if (!views_.contains(command.view) && views_.size() >= kMaxViews) {
     return Error{ErrorCode::kInvalidArgument,
                  "view.view: " + std::to_string(kMaxViews) + " views exist, which is the limit"};
@@ -103,6 +148,7 @@ Status PictureStreams::set_view(const ViewCommand& command) {
   settings.eye_world_m = command.eye_world_m.value_or(settings.eye_world_m);
   settings.show = command.show.value_or(settings.show);
   ++view.change;
+  view.changed_ns = now_ns;
   return {};
 }
 
@@ -127,6 +173,8 @@ void PictureStreams::restart(const std::string& run_id) {
     if (stream.request.run_id != run_id) continue;
     stream.slot = PictureSlot(stream.request.max_hz);
     stream.slot.set_limit_hz(limit_hz_);
+    stream.slot.set_window(acknowledges_ ? kWindow : 0);
+    if (stream.sequence > 0) stream.shown = stream.sequence - 1;
     stream.ticket = 0;
     stream.sent.reset();
     stream.error_sent.clear();
@@ -182,23 +230,82 @@ std::int64_t PictureStreams::add_others(const Stream& stream,
   return frames;
 }
 
+bool PictureStreams::view_moves(const Stream& stream, std::int64_t now_ns) const {
+  if (kind_of(stream.request.name) != PictureRequest::Kind::kScene) return false;
+  const auto view = views_.find(stream.request.view);
+  if (view == views_.end() || view->second.changed_ns == 0) return false;
+  return now_ns - view->second.changed_ns < kViewMovesNs;
+}
+
+/// While processor time is short, because a real-time flight limits the pictures, video is made
+/// only for a client that needs it: it takes several times the time of a JPEG.
+void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const {
+  stream->reduced = false;
+  if (!stream->moving) return;
+  const Reduction reduction = reduction_at(link_.reduction());
+  stream->reduced = link_.reduction() > 0;
+  request->quality = std::max(std::min(request->quality, kLeastQuality),
+                              request->quality - reduction.quality_less);
+  request->max_width_px >>= reduction.halvings;
+  request->scene.width_px >>= reduction.halvings;
+  request->scene.height_px >>= reduction.halvings;
+  // The first picture after a seek is a JPEG, which is there sooner than a key picture.
+  const bool follows = stream->sent && stream->sent->change == stream->drawn.change;
+  const bool affordable = !limit_hz_ || link_.tight();
+  if (!stream->request.video || !follows || !affordable) {
+    stream->key_wanted = true;
+    return;
+  }
+  stream->reduced = true;
+  request->video = server::VideoChain{
+      0, stream->id, stream->video_sent, std::exchange(stream->key_wanted, false)};
+}
+
+void PictureStreams::request_one(Stream* stream,
+                                 const std::vector<Instant>& instants,
+                                 bool playing,
+                                 ViewerPort* port,
+                                 std::int64_t now_ns) {
+  const Instant* instant = find_instant(instants, stream->request.run_id);
+  if (instant == nullptr) return;
+  auto request = request_of(*stream, *instant);
+  if (!request) return;
+  const std::int64_t others = add_others(*stream, instants, &*request);
+  if (stream->slot.window_full() && now_ns - stream->requested_ns > kShownByNs) {
+    // Its pictures were lost, or the client does not report them.
+    stream->shown = stream->sequence - 1;
+    count_unshown(stream);
+  }
+  stream->moving = playing || view_moves(*stream, now_ns);
+  const bool full = !stream->moving && stream->reduced;
+  stream->slot.want({instant->frame, change_of(*stream), others, full});
+  const auto key = stream->slot.take(now_ns);
+  if (!key) return;
+  stream->ticket = ++tickets_;
+  stream->requested_ns = now_ns;
+  stream->live = instant->live;
+  stream->drawn = *key;
+  const bool was_reduced = stream->reduced;
+  fit_to_link(stream, &*request);
+  // So that the same picture is not requested once more.
+  if (full) stream->reduced = was_reduced;
+  port->draw({stream->id, stream->ticket}, *request);
+}
+
 void PictureStreams::pump(const std::vector<Instant>& instants,
+                          bool playing,
                           ViewerPort* port,
                           std::int64_t now_ns) {
+  bool moving = false;
+  bool blocked = false;
+  view_moved_ = false;
   for (Stream& stream : streams_) {
-    const Instant* instant = find_instant(instants, stream.request.run_id);
-    if (instant == nullptr) continue;
-    auto request = request_of(stream, *instant);
-    if (!request) continue;
-    const std::int64_t others = add_others(stream, instants, &*request);
-    stream.slot.want({instant->frame, change_of(stream), others});
-    const auto key = stream.slot.take(now_ns);
-    if (!key) continue;
-    stream.ticket = ++tickets_;
-    stream.live = instant->live;
-    stream.drawn = *key;
-    port->draw({stream.id, stream.ticket}, *request);
+    request_one(&stream, instants, playing, port, now_ns);
+    moving = moving || stream.moving;
+    blocked = blocked || (stream.moving && stream.slot.blocked(now_ns));
+    view_moved_ = view_moved_ || view_moves(stream, now_ns);
   }
+  if (acknowledges_) link_.note(moving, blocked, now_ns);
 }
 
 PictureStreams::Stream* PictureStreams::find(const PictureTicket& ticket) {
@@ -224,15 +331,19 @@ void PictureStreams::ready(const PictureTicket& ticket,
   }
   stream->error_sent.clear();
   stream->slot.answered_with(picture->frame);
+  stream->slot.sending();
   stream->sent = shown;
   PictureHeader header;
   header.stream_id = stream->id;
   header.sequence = stream->sequence++;
+  count_unshown(stream);
   header.frame = picture->frame;
   header.t_ns = picture->t_ns;
   header.width_px = static_cast<std::uint16_t>(picture->width_px);
   header.height_px = static_cast<std::uint16_t>(picture->height_px);
-  header.encoding = picture->grey ? PictureEncoding::kJpegGrey : PictureEncoding::kJpegColour;
+  header.encoding = encoding_of(*picture);
+  header.key = picture->key;
+  if (picture->coding == server::PictureCoding::kVp8) ++stream->video_sent;
   header.payload_bytes = static_cast<std::uint32_t>(picture->bytes->size());
   header.live = stream->live;
   if (const auto& scale = picture->scale) {
@@ -267,6 +378,7 @@ void PictureStreams::sent(const PictureTicket& ticket) {
 }
 
 bool PictureStreams::waiting() const {
+  if (view_moved_) return true;
   return std::any_of(
       streams_.begin(), streams_.end(), [](const Stream& stream) { return stream.slot.waiting(); });
 }
@@ -284,7 +396,7 @@ nlohmann::json PictureStreams::pictures_json() const {
     if (!stream.request.view.empty()) entry["view"] = stream.request.view;
     list.push_back(std::move(entry));
   }
-  return {{"type", "pictures"}, {"pictures", std::move(list)}};
+  return {{"type", "pictures"}, {"pictures", std::move(list)}, {"reduction", link_.reduction()}};
 }
 
 }  // namespace overfly::net

@@ -12,6 +12,7 @@
 
 #include "core/result.hpp"
 #include "server/net/stream/client_message.hpp"
+#include "server/net/stream/link_meter.hpp"
 #include "server/net/stream/picture_slot.hpp"
 #include "server/net/stream/viewer_port.hpp"
 #include "server/timeline/row_alignment.hpp"
@@ -34,11 +35,17 @@ class PictureStreams {
     std::string alignment = server::kRecordedAlignment;  ///< of the estimates in scenes
   };
 
+  /// Pictures that a client who acknowledges may have got and not shown.
+  static constexpr int kWindow = 2;
+
   /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number; one
   /// that stays unchanged is not sent again.
-  void subscribe(const std::vector<StreamRequest>& requests);
+  void subscribe(const SubscribeCommand& command);
   /// Errors: kInvalidArgument beyond kMaxViews views.
-  Status set_view(const ViewCommand& command);
+  Status set_view(const ViewCommand& command, std::int64_t now_ns);
+  void shown(const ShownCommand& command);
+  /// Errors: kNotFound if there is no such stream.
+  Status restart_video(const KeyCommand& command);
   /// Discards a run's pictures in progress, because it is not watched any more, or again.
   void restart(const std::string& run_id);
   /// The maximum rate of each stream; empty = none. @return true if it changed
@@ -46,14 +53,22 @@ class PictureStreams {
   /// Makes every stream send the picture of the present instant again.
   void show_again() { ++change_; }
 
-  /// Requests every picture that is due. @param instants  of the watched runs that have frames
-  void pump(const std::vector<Instant>& instants, ViewerPort* port, std::int64_t now_ns);
+  /// Requests every picture that is due.
+  /// @param instants  of the watched runs that have frames
+  /// @param playing  the clock moves
+  void pump(const std::vector<Instant>& instants,
+            bool playing,
+            ViewerPort* port,
+            std::int64_t now_ns);
   /// Sends a picture that was drawn, or reports to the client why it was not.
   void ready(const PictureTicket& ticket, const Result<server::Picture>& picture, ViewerPort* port);
   void sent(const PictureTicket& ticket);
 
-  /// True if a picture waits only for its time.
+  /// True if a picture waits only for its time, or a view has just been moved.
   [[nodiscard]] bool waiting() const;
+  /// By how much moving pictures are reduced for the client (LinkMeter). @return true if it changed
+  /// since the last call
+  bool reduction_changed();
   /// The `pictures` message.
   [[nodiscard]] nlohmann::json pictures_json() const;
 
@@ -66,13 +81,28 @@ class PictureStreams {
     std::uint64_t change = 0;  ///< increases with each change of the request
     std::uint64_t ticket = 0;  ///< of the picture in progress; 0 = none
     bool live = false;         ///< it was requested as a live one
+    bool moving = false;       ///< more are to follow
+    bool reduced = false;      ///< the one requested last: in detail, or by a video's coding
     PictureKey drawn;          ///< the key of its request
     std::optional<PictureKey> sent;
+    std::optional<std::uint32_t> shown;  ///< sequence number of the newest that the client shows
+    std::int64_t requested_ns = 0;       ///< when the newest was requested
+    std::uint64_t video_sent = 0;        ///< video pictures
+    bool key_wanted = false;             ///< the client lost one
     std::string error_sent;
   };
   Stream* find(const PictureTicket& ticket);
   std::optional<server::PictureRequest> request_of(const Stream& stream,
                                                    const Instant& instant) const;
+  void request_one(Stream* stream,
+                   const std::vector<Instant>& instants,
+                   bool playing,
+                   ViewerPort* port,
+                   std::int64_t now_ns);
+  /// Reduces a moving picture, and chooses its coding.
+  void fit_to_link(Stream* stream, server::PictureRequest* request) const;
+  [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
+  static void count_unshown(Stream* stream);
   /// Adds the other runs that a scene shows. @return the sum of their frames
   static std::int64_t add_others(const Stream& stream,
                                  const std::vector<Instant>& instants,
@@ -85,6 +115,7 @@ class PictureStreams {
   struct View {
     server::SceneSettings settings;
     std::uint64_t change = 0;
+    std::int64_t changed_ns = 0;
   };
   std::uint64_t change_of(const Stream& stream) const;
   void forget_old_streams();
@@ -98,6 +129,10 @@ class PictureStreams {
   std::map<StreamKey, std::uint32_t> sequences_;  ///< of streams not subscribed now
   std::map<std::string, View> views_;             ///< by name
   std::optional<double> limit_hz_;
+  bool acknowledges_ = false;
+  LinkMeter link_;
+  int reduction_told_ = 0;
+  bool view_moved_ = false;  ///< in the last pump
   std::uint64_t change_ = 0;
   std::uint64_t tickets_ = 0;
 };

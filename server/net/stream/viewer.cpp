@@ -52,16 +52,26 @@ nlohmann::json clock_json(const PlaybackClock& clock) {
 /// Executes each command; messages that result from it are sent by the tick after the answer.
 struct Viewer::CommandVisitor {
   Viewer& viewer;
+  std::int64_t now_ns;
 
   /// Answered when the run is open.
   Status operator()(const WatchCommand& /*command*/) const { return {}; }
   Status operator()(const UnwatchCommand& command) const { return viewer.unwatch(command); }
   Status operator()(const SubscribeCommand& command) const {
-    viewer.pictures_.subscribe(command.pictures);
+    viewer.pictures_.subscribe(command);
     viewer.pictures_due_ = true;
     return {};
   }
-  Status operator()(const ViewCommand& command) const { return viewer.pictures_.set_view(command); }
+  Status operator()(const ShownCommand& command) const {
+    viewer.pictures_.shown(command);
+    return {};
+  }
+  Status operator()(const KeyCommand& command) const {
+    return viewer.pictures_.restart_video(command);
+  }
+  Status operator()(const ViewCommand& command) const {
+    return viewer.pictures_.set_view(command, now_ns);
+  }
   Status operator()(const SeekCommand& command) const { return viewer.seek(command); }
   Status operator()(const StepCommand& command) const { return viewer.step(command); }
   Status operator()(const PlayCommand& /*command*/) const {
@@ -127,7 +137,7 @@ void Viewer::carry_out(const std::string& text, std::int64_t now_ns) {
     port_.open_run(command->run_id);
     return;
   }
-  if (status) status = std::visit(CommandVisitor{*this}, message.command);
+  if (status) status = std::visit(CommandVisitor{*this, now_ns}, message.command);
   answer(message.request, status, &port_);
   tick(now_ns);
 }
@@ -279,6 +289,7 @@ void Viewer::refresh(std::int64_t now_ns) {
 void Viewer::tick(std::int64_t now_ns) {
   refresh(now_ns);
   if (pictures_.set_limit_hz(port_.picture_limit_hz())) pictures_due_ = true;
+  if (pictures_.reduction_changed()) pictures_due_ = true;
   if (pictures_due_) {
     pictures_due_ = false;
     port_.send_text(to_text(pictures_.pictures_json()));
@@ -324,7 +335,7 @@ void Viewer::pump_pictures(std::int64_t now_ns) {
     instants.push_back(
         {&watch->timeline(), watch->run_id(), row->frame, row->t_ns, live, watch->alignment()});
   }
-  pictures_.pump(instants, &port_, now_ns);
+  pictures_.pump(instants, clock_.playing(), &port_, now_ns);
 }
 
 void Viewer::picture_ready(const PictureTicket& ticket,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/camera/halved_image.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/text/number_text.hpp"
 #include "server/files/jpeg.hpp"

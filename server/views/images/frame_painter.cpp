@@ -97,19 +97,17 @@ FramePainter::Painted FramePainter::camera(const PictureRequest& request,
   const auto live = frame.timeline->live_camera(frame.camera);
   if (request.live && live && live->image) {
     images_.remember(frame, *live);
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
+    return painted(encoder_.encode(*live, request));
   }
   const fs::path recorded = CameraFiles(*folder, frame.camera, request.camera).image(row.frame);
   std::error_code error;
   if (fs::is_regular_file(recorded, error)) {
-    return painted(
-        encoder_.encode_file(recorded, row.frame, row.t_ns, request.quality, request.max_width_px));
+    return painted(encoder_.encode_file(recorded, row.frame, row.t_ns, request));
   }
   const auto image = images_.received(frame);
   if (!image) return image.error();
   if (!*image) return std::optional<Picture>();
-  return painted(
-      encoder_.encode({row.frame, row.t_ns, **image}, request.quality, request.max_width_px));
+  return painted(encoder_.encode({row.frame, row.t_ns, **image}, request));
 }
 
 FramePainter::Painted FramePainter::depth(const PictureRequest& request, const ViewedFrame& frame) {
@@ -136,8 +134,7 @@ FramePainter::Painted FramePainter::scaled(const PictureRequest& request,
   return painted(encoder_.encode({frame.row.frame, frame.row.t_ns, image.image},
                                  *image.scale,
                                  frame.timeline->cameras()[frame.camera].model.pinhole(),
-                                 request.quality,
-                                 request.max_width_px));
+                                 request));
 }
 
 Result<FramePainter::ComparedView> FramePainter::compared_view(const ErrorOf& error,
@@ -215,7 +212,7 @@ FramePainter::Painted FramePainter::debug(const PictureRequest& request,
   if (Status status = check_estimator(timeline, request.estimator); !status) return status.error();
   const auto live = timeline.live_debug(request.estimator);
   if (live && live->image && (request.live || live->frame == row.frame)) {
-    return painted(encoder_.encode(*live, request.quality, request.max_width_px));
+    return painted(encoder_.encode(*live, request));
   }
   const auto folder = runs_.folder(request.run_id);
   if (!folder) return folder.error();
@@ -228,8 +225,7 @@ FramePainter::Painted FramePainter::debug(const PictureRequest& request,
   return painted(encoder_.encode_file(debug_image_file(*folder, name, *frame),
                                       *frame,
                                       stamp_before(timeline, row, *frame),
-                                      request.quality,
-                                      request.max_width_px));
+                                      request));
 }
 
 }  // namespace overfly::server

@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "core/result.hpp"
+#include "server/record/recorded_numbers.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/views/images/frame_images.hpp"
 #include "server/views/picture_request.hpp"
-#include "server/views/recorded_numbers.hpp"
 #include "server/views/view_encoding.hpp"
 #include "server/views/view_renderers.hpp"
 

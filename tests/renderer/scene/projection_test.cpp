@@ -17,7 +17,7 @@ using overfly::testing::ProceduralGround;
 const PinholeCamera kPinhole{640, 480, 400.0, 400.0, 319.5, 239.5};
 
 /// A nadir camera, image top to the north, then rolled to the right and pitched.
-Pose nadir_pose(const Eigen::Vector3d& place, double roll_rad = 0.0, double pitch_rad = 0.0) {
+Pose tilted_camera(const Eigen::Vector3d& place, double roll_rad = 0.0, double pitch_rad = 0.0) {
   Eigen::Matrix3d R_world_camera;
   R_world_camera << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   const Eigen::AngleAxisd roll(roll_rad, Eigen::Vector3d::UnitY());
@@ -122,7 +122,7 @@ class Projection : public ::testing::Test {
 
 TEST_F(Projection, LaysPixelsWhereTheCameraSeesThemThroughEveryLens) {
   use(overfly::testing::hills_m, {-45.0, 45.0});
-  const Pose pose = nadir_pose({20.0, -30.0, 240.0}, 0.35, -0.2);
+  const Pose pose = tilted_camera({20.0, -30.0, 240.0}, 0.35, -0.2);
   const Pose view = look_at({260.0, -330.0, 330.0}, {20.0, -30.0, 0.0}, {0, 0, 1});
   const CameraModel models[] = {
       CameraModel(kPinhole),
@@ -144,8 +144,8 @@ TEST_F(Projection, LaysPixelsWhereTheCameraSeesThemThroughEveryLens) {
 TEST_F(Projection, FollowsTheRowsOfARollingShutter) {
   use([](double, double) { return 0.0; }, {0.0, 0.0});
   const CameraModel camera(kPinhole);
-  const Pose first = nadir_pose({-5.0, 0.0, 200.0}, -0.01);
-  const Pose last = nadir_pose({5.0, 0.0, 200.0}, 0.01);
+  const Pose first = tilted_camera({-5.0, 0.0, 200.0}, -0.01);
+  const Pose last = tilted_camera({5.0, 0.0, 200.0}, 0.01);
   const Pose view = top_viewpoint({0.0, 0.0, 0.0}, 0.0, 400.0);
   for (const double row : {20.0, 239.5, 455.0}) {
     const Eigen::Vector2d pixel(300.0, row);
@@ -187,7 +187,7 @@ TEST_F(Projection, KeepsTheColoursOfAColourImage) {
   use([](double, double) { return 0.0; }, {0.0, 0.0});
   auto blue = std::make_shared<Image>(kPinhole.width_px, kPinhole.height_px, 3);
   for (std::size_t i = 2; i < blue->data.size(); i += 3) blue->data[i] = 250;
-  const Pose pose = nadir_pose({0.0, 0.0, 150.0});
+  const Pose pose = tilted_camera({0.0, 0.0, 150.0});
   const Image scene = draw(taken(blue, CameraModel(kPinhole), pose, pose),
                            top_viewpoint({0.0, 0.0, 0.0}, 0.0, 300.0));
   EXPECT_GT(scene.at(480, 360, 2), 200);

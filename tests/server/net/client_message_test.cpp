@@ -40,7 +40,36 @@ TEST(ClientMessage, ReadsSubscriptionsWithDefaults) {
   ASSERT_EQ(subscribe.pictures.size(), 4U);
   EXPECT_EQ(subscribe.pictures[0], (StreamRequest{"r", "camera", 31.0, 75, 1280}));
   EXPECT_EQ(subscribe.pictures[1], (StreamRequest{"q", "debug/a", 5.0, 60, 1280}));
-  EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, "", "map"}));
+  EXPECT_EQ(subscribe.pictures[3], (StreamRequest{"r", "scene", 31.0, 75, 1280, false, "", "map"}));
+}
+
+TEST(ClientMessage, ReadsWhatAClientCanShowAndHasShown) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","acknowledge":true,"pictures":[
+          {"run":"r","name":"camera","encoding":"vp8"},{"run":"r","name":"scene","encoding":"jpeg"},
+          {"run":"r","name":"depth"}]})");
+  EXPECT_TRUE(subscribe.acknowledges);
+  ASSERT_EQ(subscribe.pictures.size(), 3U);
+  EXPECT_TRUE(subscribe.pictures[0].video);
+  EXPECT_FALSE(subscribe.pictures[1].video);
+  EXPECT_FALSE(subscribe.pictures[2].video);
+  const auto shown =
+      parse_as<ShownCommand>(R"({"type":"shown","pictures":[[3,17],[4294967295,0]]})");
+  EXPECT_THAT(shown.pictures,
+              ::testing::ElementsAre(std::pair(3U, 17U), std::pair(4294967295U, 0U)));
+  EXPECT_EQ(parse_as<KeyCommand>(R"({"type":"key","id":9})").stream_id, 9U);
+  for (const char* wrong : {
+           R"({"type":"shown"})",
+           R"({"type":"shown","pictures":[[3]]})",
+           R"({"type":"shown","pictures":[[3,-1]]})",
+           R"({"type":"shown","pictures":[[3,4294967296]]})",
+           R"({"type":"shown","pictures":[3]})",
+           R"({"type":"key"})",
+           R"({"type":"key","id":-1})",
+           R"({"type":"subscribe","pictures":[{"run":"r","name":"camera","encoding":"gif"}]})",
+       }) {
+    EXPECT_FALSE(parse_client_message(wrong).status.ok()) << wrong;
+  }
 }
 
 TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {

@@ -18,6 +18,7 @@ PictureHeader example_header() {
   header.height_px = 960;
   header.encoding = PictureEncoding::kJpegGrey;
   header.payload_bytes = 3;
+  header.key = false;
   header.live = true;
   header.scale = {-2.0F, 100.0F, true};
   header.full_width_px = 2560;
@@ -57,6 +58,18 @@ TEST(PictureCodec, ReadsWhatItWrote) {
   EXPECT_EQ(decoded->scale, example_header().scale);
   EXPECT_EQ(decoded->full_width_px, 2560);
   EXPECT_EQ(decoded->full_height_px, 1920);
+}
+
+TEST(PictureCodec, TellsVideoAndItsKeyPictures) {
+  PictureHeader header = example_header();
+  header.encoding = PictureEncoding::kVp8;
+  header.key = true;
+  const auto bytes = encode_picture_header(header);
+  EXPECT_EQ(bytes[36], 3);
+  EXPECT_EQ(bytes[44], 15);
+  EXPECT_TRUE(decode_picture_header(message_of(header))->key);
+  header.key = false;
+  EXPECT_FALSE(decode_picture_header(message_of(header))->key);
 }
 
 TEST(PictureCodec, HasAScaleOnlyIfItSaysSo) {

@@ -131,6 +131,88 @@ TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
   EXPECT_EQ(request.others[0].first_colour, 4U);
 }
 
+/// A run that has ended, of 100 frames.
+std::shared_ptr<server::RunTimeline> flown_run() {
+  server::RunInfo info;
+  info.status = server::RunStatus::kCompleted;
+  auto timeline = std::make_shared<server::RunTimeline>(info, std::vector<std::string>());
+  for (int i = 0; i < 100; ++i) timeline->append_frame(frame_row(i, i * 40'000'000LL));
+  return timeline;
+}
+
+/// A picture as the painter would make it.
+server::Picture picture_of_frame(std::int64_t frame, bool video) {
+  server::Picture picture;
+  picture.frame = frame;
+  picture.coding = video ? server::PictureCoding::kVp8 : server::PictureCoding::kJpeg;
+  picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(3);
+  return picture;
+}
+
+/// What rests is a JPEG; what moves is video, in a chain that a lost picture breaks.
+TEST_F(ViewerTest, SendsVideoOfWhatMovesToClientsThatShowIt) {
+  timeline_ = flown_run();
+  const json camera = {{"run", "r"}, {"name", "camera"}, {"encoding", "vp8"}};
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "subscribe"}, {"pictures", {camera}}, {"acknowledge", true}, {"request", 2}});
+  const auto next = [&] {
+    const auto drawn = std::exchange(port_.drawn, {});
+    return drawn.empty() ? std::nullopt : std::optional(drawn.back());
+  };
+  std::uint32_t sequence = 0;
+  const auto show = [&](const auto& drawn, std::int64_t frame) {
+    viewer_.picture_ready(
+        drawn.first, picture_of_frame(frame, drawn.second.video.has_value()), now_ns_);
+    viewer_.picture_sent(drawn.first, now_ns_);
+    viewer_.take_text(
+        json{{"type", "shown"}, {"pictures", {{drawn.first.stream_id, sequence++}}}}.dump(),
+        now_ns_);
+  };
+  auto drawn = next();
+  ASSERT_TRUE(drawn);
+  EXPECT_FALSE(drawn->second.video) << "it rests";
+  show(*drawn, 0);
+  viewer_.take_text(json{{"type", "play"}}.dump(), now_ns_);
+  std::vector<server::VideoChain> chains;
+  for (int tick = 1; tick <= 20; ++tick) {
+    now_ns_ += 40'000'000;
+    viewer_.tick(now_ns_);
+    drawn = next();
+    if (!drawn) continue;
+    if (drawn->second.video) chains.push_back(*drawn->second.video);
+    const std::uint32_t id = drawn->first.stream_id;
+    show(*drawn, tick);
+    if (tick == 10) viewer_.take_text(json{{"type", "key"}, {"id", id}}.dump(), now_ns_);
+  }
+  ASSERT_GT(chains.size(), 10U);
+  int keys = 0;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    EXPECT_EQ(chains[i].pictures, i);
+    keys += chains[i].key ? 1 : 0;
+  }
+  EXPECT_EQ(keys, 1) << "asked for by the client; an encoder begins with one anyway";
+}
+
+/// At most two pictures are on the way to a client that says what it has shown.
+TEST_F(ViewerTest, WaitsForAClientThatDoesNotShowItsPictures) {
+  timeline_ = flown_run();
+  const json camera = {{"run", "r"}, {"name", "camera"}};
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "subscribe"}, {"pictures", {camera}}, {"acknowledge", true}, {"request", 2}});
+  viewer_.take_text(json{{"type", "play"}}.dump(), now_ns_);
+  int sent = 0;
+  for (int tick = 0; tick < 50; ++tick) {
+    for (const auto& [ticket, request] : std::exchange(port_.drawn, {})) {
+      viewer_.picture_ready(ticket, picture_of_frame(tick, false), now_ns_);
+      viewer_.picture_sent(ticket, now_ns_);
+      ++sent;
+    }
+    now_ns_ += 40'000'000;
+    viewer_.tick(now_ns_);
+  }
+  EXPECT_EQ(sent, 2);
+}
+
 /// A panel that appears costs only its own pictures.
 TEST_F(ViewerTest, DrawsOnlyTheStreamsThatASubscriptionChanges) {
   using Kind = server::PictureRequest::Kind;

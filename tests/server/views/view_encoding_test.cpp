@@ -22,6 +22,13 @@ std::shared_ptr<const Image> ramp(int width_px, int height_px, int channels) {
   return image;
 }
 
+PictureRequest request_of(int quality, int max_width_px) {
+  PictureRequest request;
+  request.quality = quality;
+  request.max_width_px = max_width_px;
+  return request;
+}
+
 TEST(HalvedToFit, KeepsWhatFitsAndAveragesWhatDoesNot) {
   const auto image = ramp(64, 48, 1);
   EXPECT_EQ(halved_to_fit(image, 64), image);
@@ -50,13 +57,34 @@ TEST(JpegSize, ReadsTheFrameHeader) {
 TEST(PictureEncoder, EncodesASharedImageOnce) {
   PictureEncoder encoder;
   const StampedImage image{7, 700, ramp(64, 48, 1)};
-  const auto first = encoder.encode(image, 75, 64);
-  const auto second = encoder.encode(image, 75, 64);
-  const auto smaller = encoder.encode(image, 75, 32);
+  const auto first = encoder.encode(image, request_of(75, 64));
+  const auto second = encoder.encode(image, request_of(75, 64));
+  const auto smaller = encoder.encode(image, request_of(75, 32));
   ASSERT_TRUE(first && second && smaller);
   EXPECT_EQ(first->bytes, second->bytes);
   EXPECT_EQ(first->frame, 7);
   EXPECT_EQ(smaller->width_px, 32);
+}
+
+TEST(PictureEncoder, EncodesAStreamAsVideoWhereItIsAskedTo) {
+  PictureEncoder encoder;
+  PictureRequest request = request_of(75, 32);
+  request.video = VideoChain{1, 2, 0, false};
+  const auto first = encoder.encode({7, 700, ramp(64, 48, 1)}, request);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->coding, PictureCoding::kVp8);
+  EXPECT_TRUE(first->key);
+  EXPECT_EQ(first->width_px, 32);
+  EXPECT_EQ(first->full_width_px, 64);
+  request.video->pictures = 1;
+  EXPECT_FALSE(encoder.encode({8, 800, ramp(64, 48, 1)}, request)->key);
+  for (std::uint32_t stream = 10; stream < 10 + VideoEncoders::kMost; ++stream) {
+    request.video = VideoChain{1, stream, 0, false};
+    const auto picture = encoder.encode({9, 900, ramp(64, 48, 1)}, request);
+    ASSERT_TRUE(picture);
+    const bool last = stream + 1 == 10 + VideoEncoders::kMost;
+    EXPECT_EQ(picture->coding, last ? PictureCoding::kJpeg : PictureCoding::kVp8);
+  }
 }
 
 TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
@@ -66,17 +94,18 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
   const auto file = folder.path() / "000003.jpg";
   overfly::testing::write_text(file, {jpeg->begin(), jpeg->end()});
   PictureEncoder encoder;
-  const auto whole = encoder.encode_file(file, 3, 300, 75, 64);
+  const auto whole = encoder.encode_file(file, 3, 300, request_of(75, 64));
   ASSERT_TRUE(whole);
   EXPECT_EQ(*whole->bytes, *jpeg);
   EXPECT_TRUE(whole->grey);
-  const auto half = encoder.encode_file(file, 3, 300, 75, 40);
+  const auto half = encoder.encode_file(file, 3, 300, request_of(75, 40));
   ASSERT_TRUE(half);
   EXPECT_EQ(half->width_px, 32);
-  EXPECT_EQ(encoder.encode_file(folder.path() / "none.jpg", 3, 300, 75, 64).error().code,
-            ErrorCode::kNotFound);
+  EXPECT_EQ(
+      encoder.encode_file(folder.path() / "none.jpg", 3, 300, request_of(75, 64)).error().code,
+      ErrorCode::kNotFound);
   overfly::testing::write_text(folder.path() / "bad.jpg", "no picture");
-  EXPECT_FALSE(encoder.encode_file(folder.path() / "bad.jpg", 3, 300, 75, 64));
+  EXPECT_FALSE(encoder.encode_file(folder.path() / "bad.jpg", 3, 300, request_of(75, 64)));
 }
 
 }  // namespace

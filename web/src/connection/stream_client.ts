@@ -84,6 +84,8 @@ export class StreamClient {
   private subscriptions: PictureStream[] = [];
   private view: Partial<SceneView> = {};
   private streams = new Map<number, { run: string; name: string }>();
+  /** Newest pictures shown, by stream, that the server does not know about. */
+  private readonly unsaid = new Map<number, number>();
   /** Labels of the picture that comes next, by stream. */
   private readonly labels = new Map<number, ServerMessage & { type: 'labels' }>();
 
@@ -142,7 +144,18 @@ export class StreamClient {
 
   subscribe(pictures: PictureStream[]): void {
     this.subscriptions = pictures;
-    this.send({ type: 'subscribe', pictures });
+    this.send({ type: 'subscribe', pictures, acknowledge: true });
+  }
+
+  /** A picture was shown, or will not be: more may come. */
+  shown(stream: number, sequence: number): void {
+    if (this.unsaid.size === 0) queueMicrotask(() => this.sayShown());
+    this.unsaid.set(stream, Math.max(sequence, this.unsaid.get(stream) ?? 0));
+  }
+
+  /** A video picture of a stream was lost: asks for one that does not need it. */
+  askForKey(stream: number): void {
+    this.send({ type: 'key', id: stream });
   }
 
   setView(view: Partial<SceneView>): void {
@@ -153,6 +166,14 @@ export class StreamClient {
   /** Sends a playback command; does nothing without a connection. */
   command(message: ClientMessage): void {
     this.send(message);
+  }
+
+  /** Without a request number: it needs no answer. */
+  private sayShown(): void {
+    const pictures = [...this.unsaid];
+    this.unsaid.clear();
+    if (this.socket === null || !this.greeted) return;
+    this.socket.send(JSON.stringify({ type: 'shown', pictures }));
   }
 
   private send(message: ClientMessage): void {
@@ -235,7 +256,7 @@ export class StreamClient {
     if (this.runs.size === 0) return;
     for (const [run, offset_ns] of this.runs) this.sendWatch(run, offset_ns);
     if (this.subscriptions.length > 0) {
-      this.send({ type: 'subscribe', pictures: this.subscriptions });
+      this.send({ type: 'subscribe', pictures: this.subscriptions, acknowledge: true });
     }
     for (const command of this.options.listener.restore()) this.send(command);
   }
@@ -243,7 +264,11 @@ export class StreamClient {
   private onBinary(buffer: ArrayBuffer): void {
     const picture = parsePicture(buffer);
     const stream = picture === null ? undefined : this.streams.get(picture.streamId);
-    if (picture === null || stream === undefined || !this.runs.has(stream.run)) return;
+    if (picture === null) return;
+    if (stream === undefined || !this.runs.has(stream.run)) {
+      this.shown(picture.streamId, picture.sequence);
+      return;
+    }
     const labels = this.labels.get(picture.streamId);
     if (labels?.sequence === picture.sequence) picture.labels = labels.labels;
     this.options.listener.onPicture(stream.run, stream.name, picture);
@@ -268,6 +293,7 @@ export class StreamClient {
     this.opening.clear();
     this.streams.clear();
     this.labels.clear();
+    this.unsaid.clear();
     if (socket !== null) {
       socket.onclose = null;
       socket.close();

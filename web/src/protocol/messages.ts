@@ -54,6 +54,7 @@ export interface PictureStream {
   max_hz?: number;
   quality?: number;
   max_width_px?: number;
+  encoding?: 'jpeg' | 'vp8';
   /** Of a scene: index of the first estimator's colour. */
   first_colour?: number;
   /** Of a scene: other runs whose tracks it shows. */
@@ -72,7 +73,10 @@ export interface ClockRange {
 export type ClientMessage =
   | { type: 'watch'; run: string; offset_ns?: number; resume?: Resume }
   | { type: 'unwatch'; run: string }
-  | { type: 'subscribe'; pictures: PictureStream[] }
+  /** `acknowledge`: the client says which pictures it has shown, so that no more are on the way. */
+  | { type: 'subscribe'; pictures: PictureStream[]; acknowledge: boolean }
+  | { type: 'shown'; pictures: [stream: number, sequence: number][] }
+  | { type: 'key'; id: number }
   | ({ type: 'view'; view?: string } & Partial<SceneView>)
   | { type: 'play' }
   | { type: 'pause' }
@@ -171,7 +175,7 @@ export type ServerMessage =
   | { type: 'error'; request?: number; code: string; message: string }
   | { type: 'run'; run: Run }
   | { type: 'series'; run: string; series: SeriesInfo[] }
-  | { type: 'pictures'; pictures: PictureInfo[] }
+  | { type: 'pictures'; pictures: PictureInfo[]; reduction?: number }
   | { type: 'labels'; id: number; sequence: number; labels: SceneLabel[] }
   | ({ type: 'rows' } & Rows)
   | { type: 'estimators'; run: string; estimators: Record<string, EstimatorStatus> }

@@ -38,6 +38,8 @@ export function parseServerMessage(text: string): ServerMessage | null {
   return message as unknown as ServerMessage;
 }
 
+export type PictureEncoding = 'jpeg' | 'vp8';
+
 export interface PictureHeader {
   streamId: number;
   sequence: number;
@@ -45,7 +47,9 @@ export interface PictureHeader {
   t_ns: number;
   width_px: number;
   height_px: number;
-  grey: boolean;
+  encoding: PictureEncoding;
+  /** Does not need the video picture before. */
+  key: boolean;
   live: boolean;
   /** Of depth [m] and error pictures [grey levels]: the values at the ends of their colours. */
   scale: { low: number; high: number; logarithmic: boolean } | null;
@@ -58,18 +62,19 @@ export interface PictureMessage extends PictureHeader {
   /** Of a scene. */
   labels?: readonly SceneLabel[];
   /** A view into the message, not a copy. */
-  jpeg: Uint8Array<ArrayBuffer>;
+  data: Uint8Array<ArrayBuffer>;
 }
 
 const kPictureHeaderBytes = 60;
 const kPictureVersion = 2;
 const kMagic = 0x4c46564f;
 const kPictureType = 1;
-const kEncodingGrey = 1;
-const kEncodingColour = 2;
+/** JPEG grey, JPEG colour, VP8. */
+const kEncodings: Readonly<Record<number, PictureEncoding>> = { 1: 'jpeg', 2: 'jpeg', 3: 'vp8' };
 const kFlagLive = 1;
 const kFlagScale = 2;
 const kFlagLogarithmic = 4;
+const kFlagKey = 8;
 
 /**
  * Parses a binary message.
@@ -86,9 +91,9 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
     throw new ParseError(`picture version ${version} is not ${kPictureVersion}`);
   }
   if (view.getUint16(6, true) !== kPictureType) return null;
-  const encoding = view.getUint16(36, true);
-  if (encoding !== kEncodingGrey && encoding !== kEncodingColour) {
-    throw new ParseError(`picture encoding ${encoding} is unknown`);
+  const encoding = kEncodings[view.getUint16(36, true)];
+  if (encoding === undefined) {
+    throw new ParseError(`picture encoding ${view.getUint16(36, true)} is unknown`);
   }
   const headerBytes = view.getUint16(38, true);
   const payloadBytes = view.getUint32(40, true);
@@ -105,7 +110,8 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
     t_ns: Number(view.getBigInt64(24, true)),
     width_px: view.getUint16(32, true),
     height_px: view.getUint16(34, true),
-    grey: encoding === kEncodingGrey,
+    encoding,
+    key: (flags & kFlagKey) !== 0,
     live: (flags & kFlagLive) !== 0,
     scale:
       (flags & kFlagScale) === 0
@@ -117,6 +123,6 @@ export function parsePicture(buffer: ArrayBuffer): PictureMessage | null {
           },
     fullWidth_px: view.getUint16(56, true),
     fullHeight_px: view.getUint16(58, true),
-    jpeg: new Uint8Array(buffer, headerBytes, payloadBytes),
+    data: new Uint8Array(buffer, headerBytes, payloadBytes),
   };
 }

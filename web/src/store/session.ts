@@ -5,6 +5,7 @@ import type { PictureMessage } from '../protocol/parse';
 import type { Run } from '../protocol/rest_types';
 import type { Notices } from './notices';
 import type { Decode } from './pictures/picture_decoder';
+import type { OpenVideo } from './pictures/video_decoding';
 import { PictureDecoder } from './pictures/picture_decoder';
 import type { ShownRun } from './permalink';
 import { pictureRates } from './pictures/picture_rates';
@@ -31,6 +32,7 @@ export class Session implements StreamListener {
   private readonly wishes = new PictureWishes();
   /** A page that is not on the screen needs no pictures. */
   private pageShown = true;
+  private video = false;
   private subscribed = kNothingSubscribed;
   /** The latest message about the world of each run. */
   private readonly saidOfWorld = new Map<string, string | null>();
@@ -40,6 +42,8 @@ export class Session implements StreamListener {
     private readonly store: Store,
     private readonly notices: Notices,
     private readonly decode: Decode,
+    private readonly openVideo: OpenVideo,
+    private readonly now_ms: () => number,
   ) {
     this.state = store.state;
   }
@@ -156,6 +160,12 @@ export class Session implements StreamListener {
     this.subscribe();
   }
 
+  /** Whether pictures may come as video, which the browser must be able to decode. */
+  useVideo(video: boolean): void {
+    this.video = video;
+    this.subscribe();
+  }
+
   /** Whether the page can be seen: no pictures are sent to one that is behind others. */
   showPage(shown: boolean): void {
     this.pageShown = shown;
@@ -172,7 +182,10 @@ export class Session implements StreamListener {
   onState(state: ConnectionState): void {
     this.state.connection = state;
     this.state.wantedSpeed = null;
-    if (state.status === 'open') this.subscribed = kNothingSubscribed;
+    if (state.status === 'open') {
+      this.subscribed = kNothingSubscribed;
+      for (const decoder of this.decoders.values()) decoder.clear();
+    }
     this.store.change('connection');
   }
 
@@ -190,7 +203,14 @@ export class Session implements StreamListener {
   }
 
   onPicture(run: string, name: string, picture: PictureMessage): void {
-    this.decoders.get(run)?.push(name, picture);
+    const decoder = this.decoders.get(run);
+    if (decoder === undefined) {
+      this.client?.shown(picture.streamId, picture.sequence);
+      return;
+    }
+    const { data, encoding } = picture;
+    this.state.watchedRun(run)?.meter.count(name, data.byteLength, encoding, this.now_ms());
+    decoder.push(name, picture);
   }
 
   onProtocolError(text: string): void {
@@ -230,19 +250,22 @@ export class Session implements StreamListener {
     watched.offset_ns = offset_ns;
     state.watched.push(watched);
     state.main ??= watched;
-    this.decoders.set(
-      id,
-      new PictureDecoder(
-        this.decode,
-        (name, picture) => {
-          watched.pictures.get(name)?.bitmap.close();
-          watched.pictures.set(name, picture);
-          this.store.change('pictures');
-        },
-        (text) => this.notices.error(text),
-      ),
-    );
+    this.decoders.set(id, this.decoderOf(watched));
     this.client?.watch(id, offset_ns);
+  }
+
+  private decoderOf(watched: WatchedRun): PictureDecoder {
+    return new PictureDecoder(this.decode, this.openVideo, {
+      done: (name, picture) => {
+        watched.pictures.get(name)?.bitmap.close();
+        watched.pictures.set(name, picture);
+        this.store.change('pictures');
+      },
+      settled: (streamId, sequence) => this.client?.shown(streamId, sequence),
+      failed: (text) => this.notices.error(text),
+      lost: (streamId) => this.client?.askForKey(streamId),
+      videoFailed: () => this.useVideo(false),
+    });
   }
 
   private leave(id: string): void {
@@ -268,6 +291,7 @@ export class Session implements StreamListener {
     for (const watched of this.state.watched) {
       watched.rates = pictureRates(message.pictures.filter(({ run }) => run === watched.id));
     }
+    this.state.reduction = message.reduction ?? 0;
     this.store.change('pictures');
   }
 
@@ -330,7 +354,10 @@ export class Session implements StreamListener {
     const { main } = this.state;
     if (main === null) return;
     const wanted = this.pageShown ? this.wishes.union() : [];
-    const pictures = wanted.filter(({ run }) => this.state.watchedRun(run) !== undefined);
+    const encoding = this.video ? ({ encoding: 'vp8' } as const) : {};
+    const pictures = wanted
+      .filter(({ run }) => this.state.watchedRun(run) !== undefined)
+      .map((stream) => ({ ...encoding, ...stream }));
     const key = JSON.stringify(pictures);
     if (key === this.subscribed) return;
     this.subscribed = key;

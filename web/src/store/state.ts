@@ -69,6 +69,8 @@ export class State {
   sensorError: string | null = null;
   /** Pictures of all watched runs, not only of the main one. */
   sideBySide = true;
+  /** Steps by which the server reduces pictures for this connection. */
+  reduction = 0;
   /** What part of the pictures is shown, by group (pictures/picture_groups.ts). */
   zooms = new Map<string, Zoom>();
   /** Where the mouse points in a picture. */

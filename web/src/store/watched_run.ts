@@ -3,8 +3,12 @@ import type { RunInstant, SceneLabel, SeriesInfo } from '../protocol/messages';
 import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
 import type { ColourScale } from './pictures/colour_scale';
 import type { PictureRate } from './pictures/picture_rates';
+import { PictureMeter } from './pictures/picture_rates';
 import type { EstimateRows } from './run_data';
 import { RunData } from './run_data';
+
+/** Of a JPEG or a video. */
+export type DecodedImage = ImageBitmap | VideoFrame;
 
 /** A decoded picture and the instant it belongs to. */
 export interface Picture {
@@ -19,7 +23,7 @@ export interface Picture {
   /** Of the image before it was reduced. */
   fullWidth_px: number;
   fullHeight_px: number;
-  bitmap: ImageBitmap;
+  bitmap: DecodedImage;
 }
 
 /** Estimates under an alignment other than the recorded one. */
@@ -50,8 +54,9 @@ export class WatchedRun {
   /** The camera shown; null = the first. */
   camera: string | null = null;
   readonly pictures = new Map<string, Picture>();
-  /** For the streams whose rate is below the requested one, by name. */
+  /** For the streams whose rate a real-time flight limits, by name. */
   rates = new Map<string, PictureRate>();
+  readonly meter = new PictureMeter();
   /** Tracks that the viewer has hidden: names of estimators, '' = the truth. */
   readonly hidden = new Set<string>();
 

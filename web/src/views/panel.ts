@@ -1,4 +1,5 @@
 // The frame of every panel: title, tools, and the number of the frame that it shows.
+import type { RateBadge } from '../store/pictures/picture_rates';
 import type { RunPlayback } from '../store/run_playback';
 import { h, setAttribute, setText } from './dom';
 
@@ -8,13 +9,11 @@ export interface Panel {
   body: HTMLElement;
   /** @param expected  frame of the playback cursor; if it differs, the difference is shown */
   showFrame(frame: number | null, expected?: number | null): void;
-  /** The rate of its pictures if it is below the requested one; else empty. */
-  showRate(text: string): void;
+  /** The rate of its pictures while they move. */
+  showRate(badge: RateBadge): void;
   /** Text shown if there is no content; null = there is content. */
   showEmpty(text: string | null): void;
 }
-
-const kRateHint = 'Pictures per second, actual / requested: the real-time flight has priority';
 
 /** Frame at the cursor; null before the first one. */
 export function frameOf(playback: RunPlayback | null): number | null {
@@ -23,7 +22,7 @@ export function frameOf(playback: RunPlayback | null): number | null {
 
 export function makePanel(name: string, title: string): Panel {
   const badge = h('span', { class: 'frame-badge', title: 'Frame shown' });
-  const rate = h('span', { class: 'rate-badge', 'data-role': 'rate', title: kRateHint });
+  const rate = h('span', { class: 'rate-badge', 'data-role': 'rate' });
   const tools = h('div', { class: 'panel-tools' });
   const empty = h('div', { class: 'panel-empty', hidden: true });
   const body = h('div', { class: 'panel-body' }, empty);
@@ -39,8 +38,10 @@ export function makePanel(name: string, title: string): Panel {
       setText(badge, frame === null ? '' : `#${frame}${offText}`);
       setAttribute(root, 'data-frame', frame === null ? null : String(frame));
     },
-    showRate(text) {
+    showRate({ text, hint, reduced }) {
       setText(rate, text);
+      setAttribute(rate, 'title', hint === '' ? null : hint);
+      rate.classList.toggle('reduced', reduced);
     },
     showEmpty(text) {
       empty.hidden = text === null;

@@ -35,13 +35,23 @@ describe('parsePicture', () => {
       t_ns: 100e9,
       width_px: 1280,
       height_px: 960,
-      grey: false,
+      encoding: 'jpeg',
+      key: false,
       live: true,
       scale: { low: 200, high: 1600, logarithmic: true },
       fullWidth_px: 2560,
       fullHeight_px: 1920,
-      jpeg: Uint8Array.from([0xff, 0xd8, 0xff]),
+      data: Uint8Array.from([0xff, 0xd8, 0xff]),
     });
+  });
+
+  it('reads what a video picture says of itself', () => {
+    const bytes = pictureBytes();
+    bytes[36] = 3;
+    bytes[44] = 8;
+    expect(parsePicture(bytes.buffer)).toMatchObject({ encoding: 'vp8', key: true, live: false });
+    bytes[44] = 0;
+    expect(parsePicture(bytes.buffer)).toMatchObject({ encoding: 'vp8', key: false });
   });
 
   it('honours a longer header of a later version of the same layout', () => {
@@ -49,7 +59,7 @@ describe('parsePicture', () => {
     bytes.set(pictureBytes().subarray(0, 60));
     bytes[38] = 68;
     bytes.set([1, 2, 3], 68);
-    expect(parsePicture(bytes.buffer)?.jpeg).toEqual(Uint8Array.from([1, 2, 3]));
+    expect(parsePicture(bytes.buffer)?.data).toEqual(Uint8Array.from([1, 2, 3]));
   });
 
   it('leaves out message types that it does not know', () => {
@@ -61,7 +71,7 @@ describe('parsePicture', () => {
   it.each([
     ['a wrong magic', 0, 0],
     ['an unknown version', 4, 3],
-    ['an unknown encoding', 36, 3],
+    ['an unknown encoding', 36, 4],
     ['a header that is too short', 38, 48],
     ['a payload beyond the message', 40, 4],
   ])('refuses %s', (_, offset, value) => {
@@ -79,10 +89,10 @@ describe('parsePicture', () => {
 
   it('gives back what encodePicture wrote, negative times too', () => {
     const header = sampleHeader({ sequence: 2, frame: -3, t_ns: -4, width_px: 5, height_px: 6 });
-    const jpeg = Uint8Array.from([9, 8, 7]);
-    expect(parsePicture(encodePicture(header, jpeg))).toEqual({ ...header, jpeg });
+    const data = Uint8Array.from([9, 8, 7]);
+    expect(parsePicture(encodePicture(header, data))).toEqual({ ...header, data });
     const depth = { ...header, scale: { low: 200, high: 1500, logarithmic: true } };
-    expect(parsePicture(encodePicture(depth, jpeg))).toEqual({ ...depth, jpeg });
+    expect(parsePicture(encodePicture(depth, data))).toEqual({ ...depth, data });
   });
 });
 

@@ -3,9 +3,9 @@ import { RestClient } from '../../src/connection/rest_client';
 import { StreamClient } from '../../src/connection/stream_client';
 import { Catalogue } from '../../src/store/catalogue';
 import { Notices } from '../../src/store/notices';
-import { Session } from '../../src/store/session';
 import { Store } from '../../src/store/state';
 import { FakeSocket, FakeTimers } from '../support/fake_socket';
+import { unwatchedSession } from '../support/viewing';
 import { WatchedRun } from '../../src/store/watched_run';
 import { sampleRun } from '../support/samples';
 
@@ -18,7 +18,7 @@ function catalogue(answers: Record<string, () => [number, unknown]>) {
   const timers = new FakeTimers();
   const later = (callback: () => void, delay_ms: number) => void timers.set(callback, delay_ms);
   const notices = new Notices(store, later);
-  const session = new Session(store, notices, () => Promise.reject(new Error('no pictures here')));
+  const session = unwatchedSession(store, notices);
   const socket = new FakeSocket();
   const client = new StreamClient({
     open: () => socket,

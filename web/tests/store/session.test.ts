@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { rateText } from '../../src/store/pictures/picture_rates';
+import { rateBadge } from '../../src/store/pictures/picture_rates';
 import { samplePlayback, playbackMessage, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
@@ -110,8 +110,11 @@ describe('Session', () => {
     viewing.socket.receive({ type: 'pictures', pictures });
     const { rates } = viewing.store.state;
     expect([...rates.keys()]).toEqual(['scene', 'camera?camera=left']);
-    expect(rateText(rates.get('camera?camera=left'))).toBe('5/31 Hz');
-    expect(rateText(rates.get('debug/feature'))).toBe('');
+    expect(rateBadge(null, rates.get('camera?camera=left'), 0)).toMatchObject({
+      text: '5/31 Hz',
+      reduced: true,
+    });
+    expect(rateBadge(null, rates.get('debug/feature'), 0).text).toBe('');
     viewing.socket.receive({ type: 'pictures', pictures: [{ id: 1, run: 'r1', name: 'scene' }] });
     expect(viewing.store.state.rates.size).toBe(0);
   });

@@ -8,6 +8,20 @@ import { Store } from '../../src/store/state';
 import { FakeSocket, FakeTimers } from './fake_socket';
 import { playbackMessage, sampleRun } from './samples';
 
+/** A session that can decode no pictures. */
+export function unwatchedSession(store: Store, notices: Notices): Session {
+  const noVideo = () => {
+    throw new Error('no video here');
+  };
+  return new Session(
+    store,
+    notices,
+    () => Promise.reject(new Error('no pictures here')),
+    noVideo,
+    () => 0,
+  );
+}
+
 export class Viewing {
   readonly store = new Store();
   readonly timers = new FakeTimers();
@@ -20,8 +34,7 @@ export class Viewing {
     const notices = new Notices(this.store, (callback, delay_ms) => {
       this.timers.set(callback, delay_ms);
     });
-    const noPictures = () => Promise.reject(new Error('no pictures here'));
-    this.session = new Session(this.store, notices, noPictures);
+    this.session = unwatchedSession(this.store, notices);
     const client = new StreamClient({
       open: () => {
         this.socket = new FakeSocket();

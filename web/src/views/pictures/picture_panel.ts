@@ -1,6 +1,7 @@
 // Panels that show pictures of a run, or of all watched runs side by side.
 import type { PictureStream, RunInstant } from '../../protocol/messages';
-import { rateText } from '../../store/pictures/picture_rates';
+import { kNoRate, rateBadge } from '../../store/pictures/picture_rates';
+import type { RateBadge } from '../../store/pictures/picture_rates';
 import type { State, Topic } from '../../store/state';
 import { runLetter } from '../../store/tracks';
 import type { WatchedRun } from '../../store/watched_run';
@@ -98,7 +99,7 @@ export abstract class PicturePanel implements View {
     if (watched === state.main) {
       this.frame = picture?.frame ?? null;
       this.panel.showFrame(this.frame, still?.frame ?? null);
-      this.panel.showRate(rateText(cell === null ? undefined : watched.rates.get(cell.key)));
+      this.panel.showRate(cell === null ? kNoRate : movingRate(state, watched, cell.key));
     }
     setAttribute(view.root, 'data-frame', picture === null ? null : String(picture.frame));
     if (cell === null) return false;
@@ -155,6 +156,13 @@ export abstract class PicturePanel implements View {
 /** A run's instant while the playback is paused or stopped; null while it moves. */
 export function standingStill({ clock }: State, watched: WatchedRun | null): RunInstant | null {
   return clock === null || clock.playing ? null : (watched?.instant ?? null);
+}
+
+/** The rate at which a stream's pictures arrive while they move. */
+export function movingRate(state: State, watched: WatchedRun, key: string): RateBadge {
+  if (state.clock?.playing !== true) return kNoRate;
+  const measured = watched.meter.rate(key, performance.now());
+  return rateBadge(measured, watched.rates.get(key), state.reduction);
 }
 
 function sentence(text: string): string {

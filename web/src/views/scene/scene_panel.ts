@@ -1,6 +1,6 @@
 // The 3D view, drawn by the server and controlled here.
 import { formatNumber } from '../../store/format';
-import { rateText } from '../../store/pictures/picture_rates';
+import { kNoRate } from '../../store/pictures/picture_rates';
 import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
@@ -8,7 +8,7 @@ import { estimateColour, kTruthColour } from '../colours';
 import { h, perFrame, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
-import { standingStill, waitingText } from '../pictures/picture_panel';
+import { movingRate, standingStill, waitingText } from '../pictures/picture_panel';
 import type { Context, View } from '../view';
 import { LabelLayer } from './label_layer';
 import { PictureCanvas } from './picture_canvas';
@@ -55,7 +55,8 @@ export class ScenePanel implements View {
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
     this.panel.showEmpty(picture === null ? waitingText(state.main) : null);
-    this.panel.showRate(rateText(state.rates.get('scene')));
+    const { main } = state;
+    this.panel.showRate(main === null ? kNoRate : movingRate(state, main, 'scene'));
   }
 
   onHidden(): void {

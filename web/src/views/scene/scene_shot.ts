@@ -28,7 +28,7 @@ export async function shootScene(
   const even = (value: number) => Math.max(64, 2 * Math.floor((value * scale) / 2));
   const size = { width_px: even(shown.width), height_px: even(shown.height) };
   client.command({ type: 'view', view: kView, ...scene.view(), ...size });
-  session.want(kView, [{ ...wish, view: kView, quality: kQuality, max_hz: 5 }]);
+  session.want(kView, [{ ...wish, view: kView, quality: kQuality, max_hz: 5, encoding: 'jpeg' }]);
   try {
     const picture = await nextPicture(context, size.width_px);
     const name = `overfly-3d-${wish.run}-${picture.frame}.png`;

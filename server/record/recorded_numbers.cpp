@@ -1,4 +1,4 @@
-#include "server/views/recorded_numbers.hpp"
+#include "server/record/recorded_numbers.hpp"
 
 #include <algorithm>
 #include <charconv>
