@@ -25,21 +25,20 @@ void Autopilot::start(const FlightState& state,
   attitude_.start_from(positions);
 }
 
-/// A turn of bank phi stalls at the stall speed over sqrt(cos phi).
-double Autopilot::safe_roll_rad(double roll_rad, const FlightState& state) const {
-  const double ratio = kTurnOverStall * stall_speed_m_s_ / std::max(state.airspeed_m_s, 1.0);
-  const double limit = std::max(rad_from_deg(10.0), std::acos(std::min(1.0, ratio * ratio)));
-  return std::clamp(roll_rad, -limit, limit);
+double bank_limit_rad(double stall_speed_m_s, double airspeed_m_s) {
+  const double ratio = kTurnOverStall * stall_speed_m_s / std::max(airspeed_m_s, 1.0);
+  return std::max(rad_from_deg(10.0), std::acos(std::min(1.0, ratio * ratio)));
 }
 
 dynamics::Controls Autopilot::update(const FlightState& state) {
   constexpr double kStepS = 1.0 / kControlRateHz;
   demand_ = pilot_.update(state, kStepS);
   const EnergyControl::Output energy = energy_.update(demand_.energy, state, kStepS);
-  dynamics::Controls commands = attitude_.update(
-      {safe_roll_rad(demand_.roll_rad, state), demand_.pitch_rad.value_or(energy.pitch_rad)},
-      state,
-      kStepS);
+  const double bank_max = bank_limit_rad(stall_speed_m_s_, state.airspeed_m_s);
+  dynamics::Controls commands = attitude_.update({std::clamp(demand_.roll_rad, -bank_max, bank_max),
+                                                  demand_.pitch_rad.value_or(energy.pitch_rad)},
+                                                 state,
+                                                 kStepS);
   commands.throttle = demand_.throttle.value_or(energy.throttle);
   return commands;
 }

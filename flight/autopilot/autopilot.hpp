@@ -9,6 +9,9 @@ namespace overfly::autopilot {
 
 /// The bank is limited so that the airspeed stays above this multiple of the turn's stall speed.
 inline constexpr double kTurnOverStall = 1.1;
+/// Largest bank at an airspeed, at least 10 deg: a turn of bank phi stalls at the stall speed over
+/// sqrt(cos phi). @param stall_speed_m_s  of level flight
+[[nodiscard]] double bank_limit_rad(double stall_speed_m_s, double airspeed_m_s);
 /// Rate at which the loops run [Hz].
 inline constexpr double kControlRateHz = 100.0;
 
@@ -29,8 +32,6 @@ class Autopilot {
   [[nodiscard]] const FlightDemand& demand() const { return demand_; }
 
  private:
-  [[nodiscard]] double safe_roll_rad(double roll_rad, const FlightState& state) const;
-
   double stall_speed_m_s_;  // at sea level
   MissionPilot pilot_;
   EnergyControl energy_;

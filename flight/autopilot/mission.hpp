@@ -12,7 +12,9 @@ namespace overfly::autopilot {
 enum class MissionCommand {
   kTakeOff,   ///< climb straight ahead to the position's height
   kWaypoint,  ///< fly to the position along the line from the item before it
-  kLoiter,    ///< circle around the position, for `turns`, for `time_s`, or until the end
+  /// Circle around the position: for `turns`, for `time_s`, until the height is reached and the
+  /// course points to the next item, or until the end.
+  kLoiter,
   kReturn,    ///< fly home at RTL_ALTITUDE and circle there as in kLoiter
   kLand,      ///< descend along the line to the position, and touch down
   kSetSpeed,  ///< change the airspeed, at once
@@ -26,6 +28,7 @@ struct MissionItem {
   double radius_m = 0.0;  ///< of a circle, < 0 to the left; 0: WP_LOITER_RAD
   std::optional<double> turns;
   std::optional<double> time_s;
+  bool until_height = false;
   double airspeed_m_s = 0.0;     ///< of kSetSpeed
   std::uint16_t number = 0;      ///< in the mission's file or at the ground station
   double accept_radius_m = 0.0;  ///< of a waypoint; 0: WP_RADIUS or the turn's lead

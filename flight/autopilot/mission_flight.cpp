@@ -16,9 +16,6 @@ constexpr double kLaunchHeightM = 1.5;
 constexpr std::int64_t kStepNs = static_cast<std::int64_t>(1e9 / kControlRateHz);
 constexpr std::int64_t kPartNs = static_cast<std::int64_t>(1e9 / kMotionRateHz);
 
-/// Terrain is followed without bumps below this length [m], and below this time at cruise [s].
-double smoothing_m(double airspeed_m_s) { return std::max(40.0, 1.6 * airspeed_m_s); }
-
 Status check_setup(const MissionSetup& setup) {
   if (Status status = check(setup.parameters); !status) return status;
   if (Status status = check(setup.mission); !status) return status;
@@ -174,6 +171,8 @@ class MissionTruth final : public TruthSource {
 
 }  // namespace
 
+double ground_smoothing_m(double airspeed_m_s) { return std::max(40.0, 1.6 * airspeed_m_s); }
+
 Result<dynamics::Aircraft> launch(const dynamics::AircraftSetup& aircraft,
                                   const Parameters& parameters,
                                   const Eigen::Vector3d& place_world_m,
@@ -212,7 +211,7 @@ Result<MissionFlight> MissionFlight::create(const MissionSetup& setup,
   Result<dynamics::Aircraft> aircraft = start_of_flight(setup);
   if (!aircraft) return aircraft.error();
   auto smooth =
-      std::make_shared<SmoothGround>(ground, smoothing_m(setup.parameters.airspeed_cruise));
+      std::make_shared<SmoothGround>(ground, ground_smoothing_m(setup.parameters.airspeed_cruise));
   MissionFlight flight(std::make_shared<const MissionSetup>(setup),
                        std::move(ground),
                        std::move(smooth),

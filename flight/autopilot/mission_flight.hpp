@@ -49,6 +49,10 @@ enum class FlightEnd {
   kTimeLimit,
 };
 
+/// Spacing of the SmoothGround that an aircraft of this cruise speed follows [m]: terrain is
+/// followed without bumps below this length.
+[[nodiscard]] double ground_smoothing_m(double airspeed_m_s);
+
 /// An aircraft at the moment of its launch: 1.5 m above a place on the ground, level, at
 /// kLaunchOverStall times its stall speed, or at AIRSPEED_CRUISE if that is less.
 /// Errors: as dynamics::trim and Aircraft::create.

@@ -20,6 +20,7 @@ enum : std::uint16_t {
   kNavReturn = 20,
   kNavLand = 21,
   kNavTakeOff = 22,
+  kNavLoiterToAlt = 31,
   kFirstConditionOrDo = 112,
   kDoChangeSpeed = 178,
   kLastDo = 300,
@@ -63,6 +64,10 @@ class Planner {
         item.command = MissionCommand::kLoiter;
         item.time_s = finite_or_zero(from.parameters[0]);
         break;
+      case kNavLoiterToAlt:
+        item.command = MissionCommand::kLoiter;
+        item.until_height = true;
+        break;
       case kNavReturn:
         item.command = MissionCommand::kReturn;
         break;
@@ -78,7 +83,8 @@ class Planner {
         return leave_out(index, from);
     }
     if (item.command == MissionCommand::kLoiter) {
-      item.radius_m = finite_or_zero(from.parameters[2]);
+      // The only circle whose radius is its second parameter.
+      item.radius_m = finite_or_zero(from.parameters[item.until_height ? 1 : 2]);
     }
     if (item.command != MissionCommand::kReturn) {
       if (Status status = place(index, from, item); !status) return status;
@@ -107,7 +113,7 @@ class Planner {
     if (from.command < kFirstConditionOrDo || from.command > kLastDo) {
       return item_error(index,
                         "command " + std::to_string(from.command) +
-                            ": the built-in aircraft cannot fly it (known: 16 to 22 and 178)");
+                            ": the built-in aircraft cannot fly it (known: 16 to 22, 31 and 178)");
     }
     plan.warnings.push_back("mission item " + std::to_string(index) + ": command " +
                             std::to_string(from.command) + " was left out");
@@ -177,7 +183,7 @@ Result<PlannedMission> plan_mission(const std::vector<Item>& items,
     MissionItem& last = plan.mission.items.back();
     const bool circles =
         last.command == MissionCommand::kLoiter || last.command == MissionCommand::kReturn;
-    if (circles && !last.turns && !last.time_s) last.turns = 1.0;
+    if (circles && !last.turns && !last.time_s && !last.until_height) last.turns = 1.0;
   }
   if (Status status = check(plan.mission); !status) return status.error();
   const Eigen::Vector2d home = plan.mission.home_world_m.head<2>();

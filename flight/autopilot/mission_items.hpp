@@ -21,10 +21,10 @@ struct PlannedMission {
 
 /// Converts MAVLink mission items; item 0 is home. Heights above home and above sea level (frames
 /// 0, 3, 5, 6) keep their difference from home's, those above terrain (10, 11) follow the ground.
-/// Commands: NAV_WAYPOINT, NAV_LOITER_UNLIM, _TURNS, _TIME, NAV_RETURN_TO_LAUNCH, NAV_LAND,
-/// NAV_TAKEOFF, DO_CHANGE_SPEED of the airspeed. Other DO_ and CONDITION_ commands are left out
-/// with a warning. A take-off and a return have no position of their own. An endless circle at the
-/// end of the mission is flown once.
+/// Commands: NAV_WAYPOINT, NAV_LOITER_UNLIM, _TURNS, _TIME, _TO_ALT, NAV_RETURN_TO_LAUNCH,
+/// NAV_LAND, NAV_TAKEOFF, DO_CHANGE_SPEED of the airspeed. Other DO_ and CONDITION_ commands are
+/// left out with a warning. A take-off and a return have no position of their own. An endless
+/// circle at the end of the mission is flown once.
 /// @param home_m  moves the mission so that its home lies there (east, north); empty: where it is
 /// Errors: kInvalidArgument naming item and value for other commands and frames, positions out of
 /// range, and a mission without items that move; check(Mission).

@@ -9,6 +9,11 @@ namespace {
 
 /// A circle counts as reached within this share of its radius.
 constexpr double kCaptureShare = 0.15;
+/// A circle's height counts as reached within this distance.
+constexpr double kHeightReachedM = 3.0;
+/// A circle is left for the next item within this angle of the course to it, at the latest after
+/// another turn: nothing points to an item inside the circle.
+constexpr double kExitAngleDeg = 10.0;
 
 }  // namespace
 
@@ -59,6 +64,7 @@ void MissionPilot::begin_item(const FlightState& state) {
   }
   circled_rad_ = circling_s_ = 0.0;
   captured_ = false;
+  circled_at_height_rad_.reset();
   cross_track_m_ = 0.0;
   if (index_ >= mission_.items.size()) {
     phase_ = FlightPhase::kDone;
@@ -143,11 +149,30 @@ bool MissionPilot::reached(const FlightState& state) const {
     }
     case MissionCommand::kLoiter:
     case MissionCommand::kReturn:
+      if (item.until_height) {
+        return circled_at_height_rad_ &&
+               (heads_for_next(state) || circled_rad_ >= *circled_at_height_rad_ + 2.0 * kPi);
+      }
       if (item.turns) return circled_rad_ >= *item.turns * 2.0 * kPi;
       return item.time_s && captured_ && circling_s_ >= *item.time_s;
     default:
       return false;
   }
+}
+
+bool MissionPilot::heads_for_next(const FlightState& state) const {
+  for (std::size_t next = index_ + 1; next < mission_.items.size(); ++next) {
+    const MissionItem& item = mission_.items[next];
+    if (item.command == MissionCommand::kSetSpeed) continue;
+    const Eigen::Vector2d way =
+        (item.command == MissionCommand::kReturn ? Eigen::Vector2d(mission_.home_world_m.head<2>())
+                                                 : item.position_m) -
+        state.position_world_m.head<2>();
+    const Eigen::Vector2d velocity = state.v_world_m_s.head<2>();
+    const double off = std::atan2(way.x(), way.y()) - std::atan2(velocity.x(), velocity.y());
+    return std::abs(wrap_pi(off)) < rad_from_deg(kExitAngleDeg);
+  }
+  return true;
 }
 
 FlightDemand MissionPilot::fly_line(const FlightState& state) {
@@ -196,6 +221,10 @@ FlightDemand MissionPilot::fly_circle(const FlightState& state, double dt_s) {
     captured_ = std::abs(cross_track_m_) < kCaptureShare * std::abs(radius);
   }
   last_bearing_rad_ = bearing;
+  const double off_m = up_of(item, here) - state.position_world_m.z();
+  if (captured_ && !circled_at_height_rad_ && std::abs(off_m) < kHeightReachedM) {
+    circled_at_height_rad_ = circled_rad_;
+  }
   FlightDemand demand;
   demand.roll_rad = roll_for(
       guidance_.around_circle(item.position_m, radius, here, state.v_world_m_s.head<2>()), state);

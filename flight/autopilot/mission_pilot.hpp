@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 #include "flight/autopilot/attitude_control.hpp"
 #include "flight/autopilot/energy_control.hpp"
@@ -45,6 +46,7 @@ class MissionPilot {
  private:
   void begin_item(const FlightState& state);
   [[nodiscard]] bool reached(const FlightState& state) const;
+  [[nodiscard]] bool heads_for_next(const FlightState& state) const;
   [[nodiscard]] double up_of(const MissionItem& item, const Eigen::Vector2d& at_m) const;
   [[nodiscard]] double turn_lead_m(const FlightState& state) const;
   [[nodiscard]] FlightDemand fly_line(const FlightState& state);
@@ -66,7 +68,8 @@ class MissionPilot {
   double circled_rad_ = 0.0;
   double circling_s_ = 0.0;
   double last_bearing_rad_ = 0.0;
-  bool captured_ = false;  // the circle has been reached
+  bool captured_ = false;                        // the circle has been reached
+  std::optional<double> circled_at_height_rad_;  // when the circle's height was reached
   double cross_track_m_ = 0.0;
 };
 

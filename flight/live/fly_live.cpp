@@ -105,26 +105,34 @@ bool is_same_mission(const std::vector<mavlink::MissionItem>& sent,
   return true;
 }
 
-Status set_mission(mavlink::Exchange& exchange, const std::filesystem::path& file) {
+/// @param warnings  of the mission's file are added to these
+Status set_mission(mavlink::Exchange& exchange,
+                   const std::filesystem::path& file,
+                   std::vector<std::string>& warnings) {
   const auto mission = mavlink::read_mission_file(file);
   if (!mission) return mission.error();
-  if (Status status = mavlink::upload_mission(exchange, *mission); !status) return status;
+  warnings.insert(warnings.end(), mission->warnings.begin(), mission->warnings.end());
+  if (Status status = mavlink::upload_mission(exchange, mission->items); !status) return status;
   const auto stored = mavlink::download_mission(exchange);
   if (!stored) return stored.error();
-  if (is_same_mission(*mission, *stored)) return {};
+  if (is_same_mission(mission->items, *stored)) return {};
   return Error{ErrorCode::kConflict,
                file.string() + ": " + exchange.target().name() +
                    " has not stored the mission as it was sent"};
 }
 
-Status prepare(mavlink::Exchange& exchange, const LiveFlight& flight, const LocalFrame& frame) {
+Status prepare(mavlink::Exchange& exchange,
+               const LiveFlight& flight,
+               const LocalFrame& frame,
+               std::vector<std::string>& warnings) {
   if (Status status = request_rates(exchange, flight); !status) return status;
   if (Status status = request_sensor_rates(exchange, flight); !status) return status;
   for (const auto& [name, value] : flight.parameters) {
     if (Status status = mavlink::set_parameter(exchange, name, value); !status) return status;
   }
   if (flight.mission_file) {
-    if (Status status = set_mission(exchange, *flight.mission_file); !status) return status;
+    if (Status status = set_mission(exchange, *flight.mission_file, warnings); !status)
+      return status;
   }
   if (flight.feedback) {
     const Geodetic& origin = frame.origin();
@@ -169,7 +177,7 @@ Result<std::unique_ptr<TruthSource>> fly_live(const LiveFlight& flight,
   }
   if (!flight.read_only) {
     const std::unique_ptr<mavlink::Exchange> exchange = vehicle->converse(cancel);
-    if (Status status = prepare(*exchange, flight, frame); !status) {
+    if (Status status = prepare(*exchange, flight, frame, truth_options.warnings); !status) {
       return status.error().in(flight.link.text());
     }
   }

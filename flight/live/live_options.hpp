@@ -47,6 +47,7 @@ struct LiveTruthOptions {
   StopConditions stop;
   /// Records the link's messages; its problem is a warning of the flight. May be null.
   std::shared_ptr<mavlink::FrameRecorder> recorder = nullptr;
+  std::vector<std::string> warnings{};  ///< of the preparation, which come first
 };
 
 }  // namespace overfly::flight::live

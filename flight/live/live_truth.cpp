@@ -228,7 +228,7 @@ std::string LiveTruth::description() const {
 
 std::vector<std::string> LiveTruth::warnings() const {
   const std::lock_guard lock(impl_->news.mutex);
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = impl_->options.warnings;
   if (impl_->restarts > 0) {
     warnings.push_back("the vehicle was restarted before its flight (" +
                        counted(impl_->restarts, "time") + "): what it had sent was forgotten");

@@ -8,6 +8,7 @@
 #include "flight/autopilot/mission_items.hpp"
 #include "flight/dynamics/airframe_file.hpp"
 #include "flight/dynamics/builtin_airframes.hpp"
+#include "flight/mavlink/vehicle/plan_file.hpp"
 
 namespace overfly::server {
 namespace {
@@ -33,7 +34,7 @@ dynamics::Environment environment_of(const terrain::World& world) {
   return dynamics::Environment::at(origin, origin.alt_ellipsoid_m);
 }
 
-Result<std::optional<Eigen::Vector2d>> home_of(const MissionFile& mission,
+Result<std::optional<Eigen::Vector2d>> home_of(const ScenarioMission& mission,
                                                const terrain::World& world) {
   if (!mission.home_at_runway) return mission.home_m;
   const auto& runway = world.spec.runway;
@@ -76,20 +77,19 @@ Result<std::unique_ptr<TruthSource>> fly_course_with(const flight::CourseParamet
   return autopilot::fly_course(course, aircraft, environment_of(world), world.tiles, seed, cancel);
 }
 
-Result<std::unique_ptr<TruthSource>> fly_mission_file(const MissionFile& mission,
-                                                      std::uint64_t seed,
-                                                      const std::optional<double>& duration_s,
-                                                      const terrain::World& world,
-                                                      const std::atomic<bool>* cancel) {
+Result<autopilot::MissionSetup> mission_setup(const ScenarioMission& mission,
+                                              const terrain::World& world) {
   Result<dynamics::Airframe> airframe = airframe_of(mission.airframe);
   if (!airframe) return airframe.error().in("airframe");
-  const auto items = flight::mavlink::read_mission_file(mission.file);
-  if (!items) return items.error();
+  const std::string origin = mission.plan.empty() ? mission.file.string() : "plan";
+  const auto stored = mission.plan.empty() ? flight::mavlink::read_mission_file(mission.file)
+                                           : flight::mavlink::parse_plan(mission.plan, origin);
+  if (!stored) return stored.error();
   const auto home_m = home_of(mission, world);
   if (!home_m) return home_m.error();
   Result<autopilot::PlannedMission> planned =
-      autopilot::plan_mission(*items, world.tiles->frame(), *world.tiles, *home_m);
-  if (!planned) return planned.error().in(mission.file.string());
+      autopilot::plan_mission(stored->items, world.tiles->frame(), *world.tiles, *home_m);
+  if (!planned) return planned.error().in(origin);
 
   autopilot::MissionSetup setup;
   setup.airframe = std::move(*airframe);
@@ -108,14 +108,25 @@ Result<std::unique_ptr<TruthSource>> fly_mission_file(const MissionFile& mission
   setup.parameters = std::move(*parameters);
   setup.mission = std::move(planned->mission);
   setup.heading_rad = planned->heading_rad;
-  setup.warnings = std::move(planned->warnings);
+  setup.warnings = stored->warnings;
+  setup.warnings.insert(setup.warnings.end(), planned->warnings.begin(), planned->warnings.end());
   setup.wind_world_m_s = wind_of(mission.airframe);
   setup.turbulence = mission.airframe.turbulence;
-  setup.seed = seed;
-  setup.duration_max_s =
+  setup.title = mission.plan.empty() ? "mission: " + mission.file.filename().string() : "mission";
+  return setup;
+}
+
+Result<std::unique_ptr<TruthSource>> fly_scenario_mission(const ScenarioMission& mission,
+                                                          std::uint64_t seed,
+                                                          const std::optional<double>& duration_s,
+                                                          const terrain::World& world,
+                                                          const std::atomic<bool>* cancel) {
+  Result<autopilot::MissionSetup> setup = mission_setup(mission, world);
+  if (!setup) return setup.error();
+  setup->seed = seed;
+  setup->duration_max_s =
       std::min(duration_s.value_or(autopilot::kFlightMaxS), autopilot::kFlightMaxS);
-  setup.title = "mission: " + mission.file.filename().string();
-  return autopilot::fly_mission(setup, world.tiles, cancel);
+  return autopilot::fly_mission(*setup, world.tiles, cancel);
 }
 
 }  // namespace overfly::server

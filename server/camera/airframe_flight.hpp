@@ -7,6 +7,7 @@
 
 #include "core/motion/truth_source.hpp"
 #include "core/result.hpp"
+#include "flight/autopilot/mission_flight.hpp"
 #include "server/scenario/scenario.hpp"
 #include "terrain/world.hpp"
 
@@ -22,11 +23,15 @@ namespace overfly::server {
 
 /// A mission that begins with a take-off starts with a launch at its home, any other in flight over
 /// its home at the height of its first item.
+/// Errors: as read_mission_file, read_airframe, plan_mission and autopilot::tuned_for;
+/// kInvalidArgument for a home at the runway of a world without one.
+[[nodiscard]] Result<autopilot::MissionSetup> mission_setup(const ScenarioMission& mission,
+                                                            const terrain::World& world);
+
 /// @param duration_s  ends the flight early; may be empty
-/// Errors: as read_mission_file, read_airframe, plan_mission and fly_mission; kInvalidArgument for
-/// a home at the runway of a world without one.
-[[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_mission_file(
-    const MissionFile& mission,
+/// Errors: as mission_setup and autopilot::fly_mission.
+[[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_scenario_mission(
+    const ScenarioMission& mission,
     std::uint64_t seed,
     const std::optional<double>& duration_s,
     const terrain::World& world,

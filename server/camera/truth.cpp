@@ -198,10 +198,10 @@ Result<std::unique_ptr<TruthSource>> create_whole_truth(const Scenario& scenario
     if (!flown) return flown.error().in("flight.ros");
     return flown;
   }
-  if (const auto* mission = std::get_if<MissionFile>(&scenario.flight)) {
+  if (const auto* mission = std::get_if<ScenarioMission>(&scenario.flight)) {
     std::optional<double> until_s = scenario.duration_s;
     if (until_s) *until_s += s_from_ns(scenario.start_ns);
-    auto flown = fly_mission_file(*mission, scenario.seed, until_s, world, cancel);
+    auto flown = fly_scenario_mission(*mission, scenario.seed, until_s, world, cancel);
     if (!flown) return flown.error().in("flight.mission");
     return flown;
   }

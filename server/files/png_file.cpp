@@ -75,9 +75,9 @@ Bytes encode(const ImageBuffer<T>& image) {
   Bytes header;
   put_u32(static_cast<std::uint32_t>(image.width_px), header);
   put_u32(static_cast<std::uint32_t>(image.height_px), header);
-  header.push_back(8 * sizeof(T));                // bits a sample
-  header.push_back(image.channels == 3 ? 2 : 0);  // RGB or grey
-  header.insert(header.end(), {0, 0, 0});         // deflate, adaptive filters, not interlaced
+  header.push_back(8 * sizeof(T));  // bits a sample
+  header.push_back(image.channels == 4 ? 6 : image.channels == 3 ? 2 : 0);
+  header.insert(header.end(), {0, 0, 0});  // deflate, adaptive filters, not interlaced
   Bytes out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   put_chunk("IHDR", header, out);
   put_chunk("IDAT", compressed(filtered(image)), out);
@@ -87,11 +87,12 @@ Bytes encode(const ImageBuffer<T>& image) {
 
 template <typename T>
 Status write(const std::filesystem::path& file, const ImageBuffer<T>& image) {
-  if (image.empty() || (image.channels != 1 && image.channels != 3)) {
+  const bool known = image.channels == 1 || image.channels == 3 || image.channels == 4;
+  if (image.empty() || !known) {
     return Error{ErrorCode::kInvalidArgument,
                  file.string() + ": image of " + std::to_string(image.width_px) + " x " +
                      std::to_string(image.height_px) + " px with " +
-                     std::to_string(image.channels) + " channels: must be grey or RGB, not empty"};
+                     std::to_string(image.channels) + " channels: must have 1, 3 or 4, not empty"};
   }
   const Bytes bytes = encode(image);
   return write_whole(file, std::span<const std::uint8_t>(bytes));

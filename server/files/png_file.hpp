@@ -10,10 +10,10 @@
 
 namespace overfly::server {
 
-/// Encodes grey or RGB, 8 or 16 bit, lossless. Every row uses the "up" filter and the lowest
-/// compression level, which takes a twentieth of the processor time of libpng's level 6
+/// Encodes grey, RGB or RGB with opacity, 8 or 16 bit, lossless. Every row uses the "up" filter and
+/// the lowest compression level, which takes a twentieth of the processor time of libpng's level 6
 /// (tests/bench/png_bench). The bytes depend only on the image and the libdeflate version.
-/// @pre the image is not empty and has 1 or 3 channels
+/// @pre the image is not empty and has 1, 3 or 4 channels
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image16& image);
 

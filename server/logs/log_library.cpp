@@ -103,13 +103,13 @@ Json entry_json(const LogEntry& entry) {
 
 }  // namespace
 
-LogLibrary::LogLibrary(std::function<LogFolders()> folders,
+LogLibrary::LogLibrary(std::function<ServedFolders()> folders,
                        const fs::path& uploads_folder,
                        const UploadLimits& limits)
     : folders_(std::move(folders)), uploads_(uploads_folder, limits) {}
 
-LogFolders LogLibrary::folders() const {
-  LogFolders folders = folders_();
+ServedFolders LogLibrary::folders() const {
+  ServedFolders folders = folders_();
   folders.uploads = uploads_.folder();
   return folders;
 }
@@ -133,7 +133,7 @@ Result<LogPoses> LogLibrary::trajectory(const std::string& name,
                                         const std::string& source,
                                         std::size_t max_poses,
                                         const std::atomic<bool>* cancel) {
-  const LogFolders where = folders();
+  const ServedFolders where = folders();
   const Result<fs::path> file = LogPlaces::find(where, name);
   if (!file) return file.error();
   std::string key;
@@ -179,7 +179,7 @@ Result<LogLibrary::Opened> LogLibrary::open(const fs::path& file,
 Result<Json> LogLibrary::info(const std::string& name,
                               const logs::LogSlice& slice,
                               const std::atomic<bool>* cancel) {
-  const LogFolders where = folders();
+  const ServedFolders where = folders();
   const Result<fs::path> file = LogPlaces::find(where, name);
   if (!file) return file.error();
   std::string key;
@@ -193,7 +193,7 @@ Result<Json> LogLibrary::info(const std::string& name,
 Result<Json> LogLibrary::series(const std::string& name,
                                 const SeriesRequest& request,
                                 const std::atomic<bool>* cancel) {
-  const LogFolders where = folders();
+  const ServedFolders where = folders();
   const Result<fs::path> file = LogPlaces::find(where, name);
   if (!file) return file.error();
   std::string key;
@@ -214,7 +214,7 @@ Result<Json> LogLibrary::residuals(const std::string& name,
                                    const ResidualRequest& request,
                                    const std::atomic<bool>* cancel,
                                    const flight::smoothing::SmoothingProgress& progress) {
-  const LogFolders where = folders();
+  const ServedFolders where = folders();
   const Result<fs::path> file = LogPlaces::find(where, name);
   if (!file) return file.error();
   std::string key;

@@ -17,10 +17,10 @@
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/series/log_series.hpp"
 #include "flight/smoothing/smooth_motion.hpp"
+#include "server/files/recent_values.hpp"
 #include "server/logs/log_places.hpp"
 #include "server/logs/log_residuals.hpp"
 #include "server/logs/log_uploads.hpp"
-#include "server/logs/recent_values.hpp"
 
 namespace overfly::server {
 
@@ -44,7 +44,7 @@ struct LogPoses {
 class LogLibrary {
  public:
   /// @param folders  where logs lie now, without uploads
-  LogLibrary(std::function<LogFolders()> folders,
+  LogLibrary(std::function<ServedFolders()> folders,
              const std::filesystem::path& uploads_folder,
              const UploadLimits& limits);
 
@@ -73,7 +73,7 @@ class LogLibrary {
                                             std::size_t max_poses,
                                             const std::atomic<bool>* cancel);
   /// Where logs and trajectories lie, with the uploads.
-  [[nodiscard]] LogFolders folders() const;
+  [[nodiscard]] ServedFolders folders() const;
   /// {"used_bytes", "quota_bytes", "max_bytes"} @param max_bytes  a further limit of one upload
   [[nodiscard]] nlohmann::json uploads_json(std::uint64_t max_bytes = UINT64_MAX) const;
   [[nodiscard]] const LogUploads& uploads() const { return uploads_; }
@@ -90,7 +90,7 @@ class LogLibrary {
                                     const std::atomic<bool>* cancel,
                                     std::string& key);
 
-  std::function<LogFolders()> folders_;
+  std::function<ServedFolders()> folders_;
   LogUploads uploads_;
   LogPlaces places_;
   RecentValues<flight::logs::OpenedLog> opened_{8};

@@ -52,7 +52,7 @@ std::string LogPlaces::format_of(const fs::path& file, const FileStamp& stamp) {
   return text;
 }
 
-LogList LogPlaces::list(const LogFolders& folders) {
+LogList LogPlaces::list(const ServedFolders& folders) {
   LogList list;
   const auto take = [&](const DataFile& file) {
     if (list.logs.size() >= kMaxLogs) return false;
@@ -73,7 +73,7 @@ LogList LogPlaces::list(const LogFolders& folders) {
   return list;
 }
 
-Result<fs::path> LogPlaces::find(const LogFolders& folders, const std::string& name) {
+Result<fs::path> LogPlaces::find(const ServedFolders& folders, const std::string& name) {
   constexpr std::size_t kShown = 200;
   if (auto file = find_data_file(folders, name, may_be_log)) return *file;
   return Error{ErrorCode::kNotFound, "log \"" + name.substr(0, kShown) + "\": no such log"};

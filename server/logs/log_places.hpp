@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/files/data_files.hpp"
 #include "server/files/file_stamp.hpp"
-#include "server/logs/data_files.hpp"
 
 namespace overfly::server {
 
@@ -41,10 +41,10 @@ class LogPlaces {
  public:
   /// All logs: files with an extension of logs, and mappings of CSV files (.json), whose first
   /// bytes have a known format. Hidden files and folders, and links to folders, are left out.
-  [[nodiscard]] LogList list(const LogFolders& folders);
+  [[nodiscard]] LogList list(const ServedFolders& folders);
   /// The file of a name, checked by `folders.sources`.
   /// Errors: kNotFound for every name that is no log's, whether the file exists or not.
-  [[nodiscard]] static Result<std::filesystem::path> find(const LogFolders& folders,
+  [[nodiscard]] static Result<std::filesystem::path> find(const ServedFolders& folders,
                                                           const std::string& name);
 
  private:

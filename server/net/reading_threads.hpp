@@ -1,4 +1,4 @@
-// Threads that read flight logs for clients.
+// Threads that read for clients: flight logs, worlds.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace overfly::net {
 
-/// Reads at most kParallel logs at a time. Thread-safe.
+/// Does at most kParallel pieces of work at a time. Thread-safe.
 class ReadingThreads {
  public:
   static constexpr int kParallel = 2;

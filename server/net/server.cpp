@@ -58,6 +58,7 @@ Server::~Server() {
     impl_->context->sessions.close_all(kFarewell);
     impl_->context->gate.close();
     impl_->context->readers.stop();
+    impl_->context->drawers.stop();
   }
   impl_->workers.stop();
   impl_->connections.stop();
@@ -81,6 +82,13 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_scenario_routes(&context->router, &runs, readers);
   add_sensor_routes(&context->router, &runs, readers);
   const auto progress = std::make_shared<ProgressBoard>();
+  const ReadingRoutes drawers{
+      [raw = context.get()](std::function<void()> work, const ReadingThreads::Cancel& cancel) {
+        return raw->drawers.take(std::move(work), cancel);
+      },
+      readers.report};
+  add_world_routes(&context->router, {&context->maps, drawers, progress});
+  add_mission_routes(&context->router, {&runs, &context->maps, drawers});
   add_progress_routes(&context->router, progress);
   add_log_routes(&context->router, {&context->logs, readers, progress});
   add_trajectory_routes(&context->router, &context->trajectories, readers);
@@ -97,8 +105,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
     return started.error();
   }
   const auto below_flights = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
-  if (const Status started = context->readers.start(below_flights); !started) {
-    return started.error();
+  for (ReadingThreads* threads : {&context->readers, &context->drawers}) {
+    if (const Status started = threads->start(below_flights); !started) return started.error();
   }
   const Status started = server->impl_->connections.start(1, below_flights);
   if (!started) return started.error();

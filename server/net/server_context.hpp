@@ -12,6 +12,7 @@
 #include "core/barrier.hpp"
 #include "server/calibration/session/calibration_desk.hpp"
 #include "server/logs/log_library.hpp"
+#include "server/maps/map_service.hpp"
 #include "server/net/http/allowed_hosts.hpp"
 #include "server/net/http/rest_router.hpp"
 #include "server/net/http/static_files.hpp"
@@ -60,12 +61,13 @@ struct ServerContext {
         logs(
             [this] {
               server::DataFolders data = runs.data_folders();
-              return server::LogFolders{{}, std::move(data.folders), std::move(data.sources)};
+              return server::ServedFolders{{}, std::move(data.folders), std::move(data.sources)};
             },
             server_options.uploads_folder,
             server_options.limits.uploads),
         trajectories(logs, [this](const std::string& id) { return runs.folder(id); }),
         calibrations(calibration_options()),
+        maps(run_manager),
         connections(server_options.limits.connections) {}
 
   [[nodiscard]] server::DeskOptions calibration_options() {
@@ -121,6 +123,9 @@ struct ServerContext {
   server::CalibrationDesk calibrations;
   /// Reads flight logs, which can take minutes, without keeping other requests waiting.
   ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
+  server::MapService maps;
+  /// Draws maps and reads the ground: a log that takes minutes does not keep them waiting.
+  ReadingThreads drawers{[this](const std::string& what) { log("error", what); }};
   std::atomic<std::uint64_t> next_client{1};  ///< next client number for the view service
   ConnectionTable connections;
 };

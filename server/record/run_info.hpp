@@ -51,6 +51,11 @@ struct RunInfo {
   /// The step in progress before the first frame ("making the built-in world: 30 %"); else empty.
   /// Known to this process only; not stored in a file.
   std::string notice;
+  /// Place in the queue of a waiting run, 1 = next; 0 = it does not wait. Known to this process
+  /// only; not stored in a file.
+  std::int64_t queue_position = 0;
+  /// Time until a flying run ends [s]; empty if that is not known. Likewise.
+  std::optional<double> left_s;
   /// Files of the world that have changed since the flight; empty if none has, and until the world
   /// was opened for a view. Known to this process only; not stored in a file.
   std::string world_change;

@@ -39,6 +39,10 @@ MemoryBudget budget_of(const RunManagerOptions& options) {
 
 ManagedRuns::ManagedRuns(RunManagerOptions manager_options)
     : options(std::move(manager_options)),
+      library({options.scenarios_folder,
+               options.saved_scenarios_folder,
+               options.allow_commands,
+               [this] { return sources(); }}),
       index(options.runs_folder),
       shelf(options.runs_folder),
       budget_(budget_of(options)) {}
@@ -122,7 +126,7 @@ RunList ManagedRuns::list() {
   {
     const std::lock_guard lock(mutex_);
     const auto add = [&](const ManagedRun& run) {
-      own.push_back(std::make_shared<const RunInfo>(run.timeline->info()));
+      own.push_back(std::make_shared<const RunInfo>(info_of(run)));
       skip.insert(run.id);
     };
     for (const auto& [id, run] : runs_) add(*run);
@@ -152,8 +156,26 @@ std::shared_ptr<RunTimeline> ManagedRuns::known_timeline(const std::string& id) 
 }
 
 std::optional<RunInfo> ManagedRuns::known_info(const std::string& id) const {
-  const auto timeline = known_timeline(id);
+  const std::lock_guard lock(mutex_);
+  if (const auto run = runs_.find(id); run != runs_.end()) return info_of(*run->second);
+  const auto timeline = timeline_of(id);
   return timeline ? std::optional<RunInfo>(timeline->info()) : std::nullopt;
+}
+
+RunInfo ManagedRuns::info_of(const ManagedRun& run) const {
+  RunInfo info = run.timeline->info();
+  const auto waiting = std::find_if(
+      queue_.begin(), queue_.end(), [&](const auto& queued) { return queued.get() == &run; });
+  if (waiting != queue_.end()) info.queue_position = waiting - queue_.begin() + 1;
+  if (info.status == RunStatus::kRunning) info.left_s = run.pace.left_s(info.frames_total);
+  return info;
+}
+
+void ManagedRuns::note_paces() {
+  const auto now = std::chrono::steady_clock::now();
+  for (auto& [id, run] : runs_) {
+    if (run->flies) run->pace.add(now, run->timeline->info().frames);
+  }
 }
 
 std::optional<Scenario> ManagedRuns::active_scenario(const std::string& id) const {

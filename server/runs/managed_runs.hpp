@@ -18,6 +18,8 @@
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
 #include "server/runs/run_memory.hpp"
+#include "server/runs/run_pace.hpp"
+#include "server/runs/scenario_library.hpp"
 #include "server/runs/timeline_shelf.hpp"
 #include "server/scenario/document/scenario_list.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -36,6 +38,7 @@ struct ManagedRun {
   WorldCache::Shared world;  ///< while the run flies over it; guarded by the manager
   bool recorded = false;     ///< it had a folder when it ended
   bool flies = false;        ///< false: queued
+  RunPace pace;              ///< guarded by the manager
 };
 
 /// Whether it is queued or flying.
@@ -83,6 +86,7 @@ class ManagedRuns {
   void forget(const std::string& id);
 
   const RunManagerOptions options;
+  ScenarioLibrary library;
   WorldCache worlds;
   PictureRate picture_rate;
   RunIndex index;
@@ -99,6 +103,8 @@ class ManagedRuns {
   // @pre for those below: mutex_ is held
   [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key);
   [[nodiscard]] std::shared_ptr<RunTimeline> timeline_of(const std::string& id) const;
+  [[nodiscard]] RunInfo info_of(const ManagedRun& run) const;
+  void note_paces();
   /// Whether the first run in the queue fits in memory next to the flying ones.
   [[nodiscard]] bool next_fits() const;
   void keep_unflown(std::shared_ptr<ManagedRun> run);

@@ -109,6 +109,7 @@ void ManagedRuns::end(const std::shared_ptr<ManagedRun>& run) {
 void ManagedRuns::watch() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, kWatchPeriod, [this] { return stopping_; })) {
+    note_paces();
     lock.unlock();
     try {
       shelf.refresh();

@@ -14,7 +14,6 @@ namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 Error no_such_run(const std::string& id) {
   return {ErrorCode::kNotFound, "run \"" + id + "\": no such run"};
@@ -57,56 +56,41 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
     filled.repeated = true;
     return *earlier;
   }
-  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
-  if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file, overrides, impl_->sources());
+  Result<Scenario> loaded = impl_->library.load(scenario, overrides);
   if (!loaded) return loaded.error();
-  loaded->sources = impl_->sources();
-  if (Status status = check_scenario(*loaded); !status) return status.error();
-  if (Status status = check_link(*loaded, impl_->options.allowed_links); !status) {
-    return status.error();
-  }
-  return impl_->enqueue(std::move(*loaded), idempotency_key, filled);
+  return start(std::move(*loaded), idempotency_key, &filled);
 }
 
-Status RunManager::check_overrides(const std::string& scenario,
-                                   const std::vector<Override>& overrides) const {
-  if (impl_->options.allow_commands || overrides.empty()) return {};
-  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
-  if (!file) return {};
-  const Result<Scenario> trusted = load_scenario(*file, {}, impl_->sources());
-  const Result<Scenario> wanted = load_scenario(*file, overrides, impl_->sources());
-  // If the file itself is invalid and only the overrides make it valid, nothing in it is trusted.
-  return wanted ? check_reach(*wanted, trusted ? *trusted : Scenario()) : Status();
+Result<RunInfo> RunManager::start(Scenario scenario,
+                                  const std::string& idempotency_key,
+                                  StartReport* report) {
+  StartReport unasked;
+  if (Status status = check_link(scenario); !status) return status.error();
+  return impl_->enqueue(
+      std::move(scenario), idempotency_key, report != nullptr ? *report : unasked);
 }
 
-std::vector<ScenarioEntry> RunManager::scenarios() const {
-  return list_scenarios(impl_->options.scenarios_folder, impl_->sources());
+Status RunManager::check_link(const Scenario& scenario) const {
+  return server::check_link(scenario, impl_->options.allowed_links);
 }
 
-Result<Json> RunManager::scenario(const std::string& name) const {
-  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, name);
-  if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file, {}, impl_->sources());
-  if (!loaded) return loaded.error();
-  return loaded->resolved;
-}
+ScenarioLibrary& RunManager::library() { return impl_->library; }
 
 Result<WorldExtent> RunManager::world_extent(const std::string& scenario,
                                              const std::function<bool()>& cancelled) {
-  const Result<fs::path> file = scenario_path(impl_->options.scenarios_folder, scenario);
-  if (!file) return file.error();
-  Result<Scenario> loaded = load_scenario(*file, {}, impl_->sources());
+  const Result<Scenario> loaded = impl_->library.load(scenario);
   if (!loaded) return loaded.error();
-  loaded->sources = impl_->sources();
-  if (Status status = check_scenario(*loaded); !status) return status.error();
   if (world_must_be_made(*loaded)) {
     return Error{ErrorCode::kConflict, "the built-in world is made with its first flight"};
   }
-  const auto go_on = [&](double) { return !cancelled || !cancelled(); };
-  const auto opened = impl_->worlds.get(*loaded, go_on);
+  const auto opened = open_world(*loaded, [&](double) { return !cancelled || !cancelled(); });
   if (!opened) return opened.error();
   return extent_of((*opened)->world);
+}
+
+Result<std::shared_ptr<const OpenedWorld>> RunManager::open_world(
+    const Scenario& scenario, const std::function<bool(double)>& progress) {
+  return impl_->worlds.get(scenario, progress);
 }
 
 DataFolders RunManager::data_folders() const { return impl_->data_folders(); }
@@ -152,6 +136,15 @@ Result<fs::path> RunManager::folder(const std::string& id) const {
   std::error_code ignored;
   if (!fs::exists(manifest_file(place), ignored)) return no_such_run(id);
   return place;
+}
+
+Result<nlohmann::json> RunManager::document_of(const std::string& id) const {
+  if (std::optional<Scenario> scenario = impl_->active_scenario(id)) return scenario->resolved;
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  Result<Scenario> flown = load_scenario(scenario_file(*place), {}, impl_->sources());
+  if (!flown) return flown.error();
+  return std::move(flown->resolved);
 }
 
 Result<Scenario> RunManager::scenario_of(const std::string& id) const {

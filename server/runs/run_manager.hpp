@@ -13,7 +13,7 @@
 #include "server/record/run_info.hpp"
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
-#include "server/scenario/document/scenario_list.hpp"
+#include "server/runs/scenario_library.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/worlds/world_extent.hpp"
@@ -22,6 +22,7 @@
 namespace overfly::server {
 
 class ManagedRuns;
+struct OpenedWorld;
 
 /// Thread-safe. Owns the threads of the runs; its destructor cancels and joins them.
 class RunManager {
@@ -31,9 +32,7 @@ class RunManager {
   static Result<std::unique_ptr<RunManager>> create(RunManagerOptions options);
   ~RunManager();
 
-  [[nodiscard]] std::vector<ScenarioEntry> scenarios() const;
-  /// The resolved document. Errors: kNotFound, kInvalidArgument.
-  [[nodiscard]] Result<nlohmann::json> scenario(const std::string& name) const;
+  [[nodiscard]] ScenarioLibrary& library();
 
   /// Where a scenario's world lies. Opens it; does not make the built-in one.
   /// @param cancelled  polled while the world is opened; true cancels
@@ -41,6 +40,12 @@ class RunManager {
   /// check_scenario, open_scenario_world.
   [[nodiscard]] Result<WorldExtent> world_extent(const std::string& scenario,
                                                  const std::function<bool()>& cancelled = {});
+  /// The world of a scenario, shared with runs and views; makes the built-in one if this machine
+  /// does not have it.
+  /// @param progress  as of open_scenario_world
+  /// Errors: as open_scenario_world.
+  [[nodiscard]] Result<std::shared_ptr<const OpenedWorld>> open_world(
+      const Scenario& scenario, const std::function<bool(double)>& progress = {});
   /// What scenarios may name now.
   [[nodiscard]] DataFolders data_folders() const;
 
@@ -52,11 +57,12 @@ class RunManager {
                                       const std::vector<Override>& overrides,
                                       const std::string& idempotency_key = "",
                                       StartReport* report = nullptr);
-  /// Checks whether an untrusted client may request these overrides: they must not change commands,
-  /// sockets and addresses of estimators in the scenario's file.
-  /// Errors: kInvalidArgument naming the field. Other errors are left to start().
-  [[nodiscard]] Status check_overrides(const std::string& scenario,
-                                       const std::vector<Override>& overrides) const;
+  /// The same for a scenario that was read already, as by ScenarioLibrary::read.
+  [[nodiscard]] Result<RunInfo> start(Scenario scenario,
+                                      const std::string& idempotency_key = "",
+                                      StartReport* report = nullptr);
+  /// Whether the server may open the link of a live flight. Errors: as server::check_link.
+  [[nodiscard]] Status check_link(const Scenario& scenario) const;
   /// Newest first. Answers from memory; reads only folders that have changed.
   [[nodiscard]] RunList runs() const;
   /// One run. Errors: kNotFound.
@@ -70,6 +76,8 @@ class RunManager {
   Status remove(const std::string& id);
   /// Folder of a run. Errors: kNotFound, also for an id that is not a plain folder name.
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
+  /// The resolved document of a run's scenario. Errors: kNotFound; as load_scenario.
+  [[nodiscard]] Result<nlohmann::json> document_of(const std::string& id) const;
   /// The scenario of a run. Errors: kNotFound; as load_scenario, check_scenario.
   [[nodiscard]] Result<Scenario> scenario_of(const std::string& id) const;
   /// The world of a run: the one it is flying over, or else the world of its scenario opened from

@@ -15,6 +15,9 @@ namespace overfly::server {
 struct RunManagerOptions {
   std::filesystem::path runs_folder;  ///< created if absent
   std::filesystem::path scenarios_folder;
+  /// Where scenarios of clients are kept, created with the first one; empty = none are. Other
+  /// folders that they name do not become data folders.
+  std::filesystem::path saved_scenarios_folder;
   RendererFactory renderer_factory;
   int max_parallel_runs = 1;           ///< further runs wait in a queue
   std::size_t max_waiting_runs = 100;  ///< further runs are refused

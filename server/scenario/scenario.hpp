@@ -69,9 +69,10 @@ struct CourseDynamics {
   bool terrain_following = true;
 };
 
-/// A mission file, flown by an airframe.
-struct MissionFile {
-  std::filesystem::path file;
+/// A mission, flown by an airframe.
+struct ScenarioMission {
+  std::filesystem::path file;  ///< a mission file, or empty: the plan
+  std::string plan;            ///< text of a plan of QGroundControl, from the scenario itself
   AirframeChoice airframe;
   double airspeed_m_s = 25.0;
   bool home_at_runway = false;
@@ -117,7 +118,7 @@ struct Scenario {
                LoggedFlight,
                flight::live::LiveFlight,
                flight::ros_live::RosFlight,
-               MissionFile,
+               ScenarioMission,
                RunFlight>
       flight;
   /// Nobody can fly it again.

@@ -8,7 +8,7 @@
 #include "core/cancel.hpp"
 #include "core/text/lower_case.hpp"
 #include "core/time.hpp"
-#include "server/logs/data_files.hpp"
+#include "server/files/data_files.hpp"
 #include "server/logs/upload_set.hpp"
 #include "server/trajectories/run_trajectory.hpp"
 #include "server/trajectories/trajectory_tables.hpp"
@@ -128,7 +128,7 @@ Json TrajectoryLibrary::list() {
 Result<TrajectoryLibrary::Read> TrajectoryLibrary::read_file(const std::string& name,
                                                              const std::string& reference,
                                                              const std::atomic<bool>* cancel) {
-  const LogFolders folders = logs_.folders();
+  const ServedFolders folders = logs_.folders();
   const auto path = find_data_file(folders, name, has_trajectory_extension);
   if (!path) return no_such_trajectory(reference);
   const fs::path times = times_file_of(*path);

@@ -16,9 +16,9 @@
 
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
+#include "server/files/recent_values.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/logs/log_uploads.hpp"
-#include "server/logs/recent_values.hpp"
 #include "server/scoring/file_score.hpp"
 #include "server/trajectories/served_trajectory.hpp"
 

@@ -17,6 +17,7 @@ import './styles/logs.css';
 import './styles/residuals.css';
 import './styles/scoring.css';
 import './styles/calibration.css';
+import './styles/missions.css';
 import './styles/palette.css';
 import './styles/narrow.css';
 import { CalibrationClient } from './connection/calibration_client';
@@ -34,6 +35,7 @@ import type { Storage } from './store/layouts/layouts';
 import { LogBrowser } from './store/logs/log_browser';
 import { LogSmoothing } from './store/logs/log_smoothing';
 import { LogWorlds } from './store/logs/log_worlds';
+import { MissionDesk } from './store/missions/mission_desk';
 import { Notices } from './store/notices';
 import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
@@ -97,6 +99,9 @@ const scores = new ScoreDesk(store, rest, uploadByBrowser);
 const calibration = new CalibrationDesk(store, new CalibrationClient(rest), rest, notices, later);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
+const missions = new MissionDesk(store, rest, session, storage, later, newKey, () =>
+  catalogue.readScenarios(),
+);
 const layouts = new Layouts(store, notices, storage, {
   look: () => {
     const { scene: shown, sideBySide } = store.state;
@@ -126,6 +131,8 @@ const context = {
   connect,
   scores,
   calibration,
+  missions,
+  rest,
   notices,
   client,
   layouts,

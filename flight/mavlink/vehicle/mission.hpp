@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "flight/mavlink/vehicle/exchange.hpp"
@@ -27,11 +28,20 @@ struct MissionItem {
 /// Of a mission file; autopilots store some hundred to a few thousand.
 inline constexpr std::size_t kMaxMissionItems = 5000;
 
-/// Reads a mission file of a ground station: "QGC WPL 110", then in each line index, current,
-/// frame, command, four parameters, latitude, longitude, height and autocontinue. Item 0 is the
-/// home position.
-/// Errors: as FieldFile::read; kUnreadable naming file, line, column, value and limit.
-[[nodiscard]] Result<std::vector<MissionItem>> read_mission_file(const std::filesystem::path& file);
+/// A mission as a ground station stored it.
+struct StoredMission {
+  std::vector<MissionItem> items;     ///< item 0 is the home position
+  std::vector<std::string> warnings;  ///< what the file contains besides, which is not flown
+};
+
+/// Whether a file begins like a plan of QGroundControl. What cannot be read is left to the reader.
+[[nodiscard]] bool is_plan_file(const std::filesystem::path& file);
+/// Reads a mission file of a ground station. Its content decides on the format: a plan of
+/// QGroundControl (plan_file.hpp), or text with "QGC WPL 110" in its first line, then in each line
+/// index, current, frame, command, four parameters, latitude, longitude, height and autocontinue.
+/// Errors: as FieldFile::read and parse_plan; kUnreadable naming file, line, column, value and
+/// limit.
+[[nodiscard]] Result<StoredMission> read_mission_file(const std::filesystem::path& file);
 
 /// MISSION_ITEM_INT of an item, to a system and component.
 [[nodiscard]] PayloadWriter encode_mission_item(const MissionItem& item,

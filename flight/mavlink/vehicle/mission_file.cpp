@@ -1,9 +1,12 @@
+#include <array>
 #include <cmath>
 #include <string>
 
+#include "core/outside/file_text.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/text_fields.hpp"
 #include "flight/mavlink/vehicle/mission.hpp"
+#include "flight/mavlink/vehicle/plan_file.hpp"
 
 namespace overfly::flight::mavlink {
 namespace {
@@ -73,30 +76,54 @@ Result<MissionItem> item_of(const FieldFile& file, const FieldLine& line, std::s
   return item;
 }
 
+/// Larger than any plan of kMaxMissionItems.
+constexpr std::uint64_t kMaxPlanBytes = std::uint64_t{16} << 20U;
+
 }  // namespace
 
-Result<std::vector<MissionItem>> read_mission_file(const std::filesystem::path& file) {
+/// The first character that is no space begins a JSON object.
+bool is_plan_file(const std::filesystem::path& file) {
+  const Result<ReadableFile> opened = ReadableFile::open(file);
+  if (!opened) return false;
+  std::array<std::uint8_t, 256> start{};
+  const Result<std::size_t> read = opened->read_some(0, start);
+  if (!read) return false;
+  for (std::size_t i = 0; i < *read; ++i) {
+    if (start[i] == ' ' || start[i] == '\t' || start[i] == '\r' || start[i] == '\n') continue;
+    return start[i] == '{';
+  }
+  return false;
+}
+
+Result<StoredMission> read_mission_file(const std::filesystem::path& file) {
+  if (is_plan_file(file)) {
+    const Result<std::string> text = read_file_text(file, kMaxPlanBytes);
+    if (!text) return text.error();
+    return parse_plan(*text, file.string());
+  }
   const Result<FieldFile> fields = FieldFile::read(file);
   if (!fields) return fields.error();
   const std::vector<FieldLine>& lines = fields->lines();
   if (lines.empty() || lines[0].fields.size() != 3 || lines[0].fields[0] != "QGC" ||
       lines[0].fields[1] != "WPL" || lines[0].fields[2] != "110") {
     return Error{ErrorCode::kUnreadable,
-                 file.string() + ": the first line must be 'QGC WPL 110': a mission file"};
+                 file.string() +
+                     ": the first line must be 'QGC WPL 110', or the file a plan of "
+                     "QGroundControl: a mission file"};
   }
   if (lines.size() < 2 || lines.size() - 1 > kMaxMissionItems) {
     return Error{ErrorCode::kUnreadable,
                  file.string() + ": " + std::to_string(lines.size() - 1) +
                      " mission items: must be in [1, " + std::to_string(kMaxMissionItems) + "]"};
   }
-  std::vector<MissionItem> items;
-  items.reserve(lines.size() - 1);
+  StoredMission mission;
+  mission.items.reserve(lines.size() - 1);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const Result<MissionItem> item = item_of(*fields, lines[i], i - 1);
     if (!item) return item.error();
-    items.push_back(*item);
+    mission.items.push_back(*item);
   }
-  return items;
+  return mission;
 }
 
 }  // namespace overfly::flight::mavlink

@@ -42,6 +42,7 @@ struct ServeArguments {
   int parallel_runs = 1;
   std::size_t max_waiting_runs = 100;  ///< further runs are refused
   std::string uploads = "uploads";
+  std::string saved_scenarios = "saved-scenarios";
   double upload_quota_mib = 4096.0;
   double memory_limit_mib = 0.0;
   /// Overrides may name programs to start and network addresses.
@@ -85,6 +86,7 @@ int serve(const ServeArguments& arguments) {
   manager_options.runs_folder = arguments.runs;
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
+  manager_options.saved_scenarios_folder = arguments.saved_scenarios;
   manager_options.max_parallel_runs = arguments.parallel_runs;
   manager_options.max_waiting_runs = arguments.max_waiting_runs;
   manager_options.memory_limit_bytes =
@@ -137,6 +139,11 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   command->add_option("--port", arguments->port, "Port; 0 = any free one")->capture_default_str();
   command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
+  command
+      ->add_option("--saved-scenarios",
+                   arguments->saved_scenarios,
+                   "Folder of the scenarios that clients save; an empty name = they cannot")
+      ->capture_default_str();
   command
       ->add_option(
           "--data",

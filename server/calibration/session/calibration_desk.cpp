@@ -58,7 +58,7 @@ std::string random_id() {
 }  // namespace
 
 Json CalibrationDesk::sources_json() const {
-  const LogFolders folders = options_.folders();
+  const ServedFolders folders = options_.folders();
   std::map<std::string, std::size_t> counts;
   bool complete = visit_data_files(folders, is_image_file, [&](const DataFile& file) {
     ++counts[folder_of(file.name)];
@@ -99,7 +99,7 @@ Result<OpenBoardImages> CalibrationDesk::folder_source(const std::string& name) 
 }
 
 Result<OpenBoardImages> CalibrationDesk::recording_source(const DeskRequest& request) const {
-  LogFolders folders = options_.folders();
+  ServedFolders folders = options_.folders();
   const auto file = find_data_file(folders, request.name, may_have_images);
   if (!file) return no_source("recording", request.name);
   return OpenBoardImages([file = *file,

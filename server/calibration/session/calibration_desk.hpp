@@ -15,8 +15,8 @@
 #include "core/result.hpp"
 #include "server/calibration/session/calibration_session.hpp"
 #include "server/calibration/session/calibration_store.hpp"
+#include "server/files/data_files.hpp"
 #include "server/imagery/live/live_address.hpp"
-#include "server/logs/data_files.hpp"
 #include "server/scenario/camera_spec.hpp"
 
 namespace overfly::server {
@@ -37,7 +37,7 @@ struct DeskRequest {
 };
 
 struct DeskOptions {
-  std::function<LogFolders()> folders;  ///< where images may be read
+  std::function<ServedFolders()> folders;  ///< where images may be read
   /// A camera of a scenario. Errors: kNotFound; as load_scenario.
   std::function<Result<CameraSpec>(const std::string& scenario, const std::string& camera)>
       scenario_camera;

@@ -1,5 +1,7 @@
 #include "server/net/http/error_response.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
 
 #include "server/net/http/json_text.hpp"
@@ -28,22 +30,48 @@ int status_of(ErrorCode code) {
   return 500;
 }
 
-/// Every line "field = value: must be ..." of a message.
+/// A dotted path of names and numbers.
+bool is_path(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '$';
+  });
+}
+
+/// The field that a line of a message begins with; empty if there is none.
+std::string field_of(const std::string& line, std::size_t* from) {
+  const std::size_t equals = line.find(" = ");
+  if (equals != std::string::npos && equals > 0) {
+    const std::size_t begin = line.find_last_of(' ', equals - 1);
+    *from = begin == std::string::npos ? 0 : begin + 1;
+    return line.substr(*from, equals - *from);
+  }
+  const std::size_t must = line.find(": must ");
+  *from = 0;
+  const std::string field = line.substr(0, must);
+  return must != std::string::npos && is_path(field) ? field : std::string();
+}
+
+}  // namespace
+
 json field_errors_of(const std::string& message) {
   json field_errors = json::array();
   std::istringstream lines(message);
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t equals = line.find(" = ");
-    if (equals == std::string::npos || equals == 0) continue;
-    const std::size_t begin = line.find_last_of(' ', equals - 1);
-    const std::size_t from = begin == std::string::npos ? 0 : begin + 1;
-    field_errors.push_back(
-        {{"field", line.substr(from, equals - from)}, {"message", line.substr(from)}});
+    std::size_t from = 0;
+    const std::string field = field_of(line, &from);
+    if (field.empty()) continue;
+    field_errors.push_back({{"field", field}, {"message", line.substr(from)}});
   }
   return field_errors;
 }
 
-}  // namespace
+HttpResponse json_text_response(const std::string& text) {
+  HttpResponse response;
+  response.content_type = "application/json";
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = text;
+  return response;
+}
 
 HttpResponse json_response(int status, const json& body) {
   HttpResponse response;

@@ -18,6 +18,12 @@ namespace overfly::net {
                                           const std::string& code,
                                           const std::string& message);
 
+/// Every invalid field of a message as {"field", "message"}: lines "field = value: must be limit"
+/// and "field: must be given".
+[[nodiscard]] nlohmann::json field_errors_of(const std::string& message);
+/// JSON that is text already.
+[[nodiscard]] HttpResponse json_text_response(const std::string& text);
+
 /// Responds with `result`'s value, or with its error.
 [[nodiscard]] HttpResponse json_or_error(const Result<nlohmann::json>& result);
 

@@ -6,6 +6,7 @@
 
 #include "server/calibration/session/calibration_desk.hpp"
 #include "server/logs/log_library.hpp"
+#include "server/maps/map_service.hpp"
 #include "server/net/http/rest_router.hpp"
 #include "server/net/rest/progress_board.hpp"
 #include "server/net/rest/rest_reading.hpp"
@@ -17,13 +18,13 @@ namespace overfly::net {
 
 /// health, openapi.json
 void add_service_routes(RestRouter* router);
-/// scenarios, scenarios/{name}, scenarios/{name}/world, scenario-schema
+/// scenarios, scenarios/{name}, scenarios/{name}/world, scenario-check, scenario-schema
 void add_scenario_routes(RestRouter* router,
                          server::RunManager* runs,
                          const ReadingRoutes& readers);
 /// runs, runs/{id}, runs/{id}/cancel
 void add_run_routes(RestRouter* router, server::RunManager* runs);
-/// runs/{id}/metrics, estimators, manifest, trajectories/{name}
+/// runs/{id}/metrics, estimators, manifest, scenario, trajectories/{name}
 void add_result_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/frames/{k}.jpg
 void add_frame_routes(RestRouter* router, server::RunManager* runs, server::ViewService* views);
@@ -31,6 +32,23 @@ void add_frame_routes(RestRouter* router, server::RunManager* runs, server::View
 void add_sensor_routes(RestRouter* router, server::RunManager* runs, const ReadingRoutes& readers);
 /// progress/{id}
 void add_progress_routes(RestRouter* router, std::shared_ptr<ProgressBoard> progress);
+/// What the routes of worlds need.
+struct WorldRoutes {
+  server::MapService* maps = nullptr;
+  ReadingRoutes readers;
+  std::shared_ptr<ProgressBoard> progress;
+};
+/// worlds, worlds/{name}, worlds/{name}/make, worlds/{name}/tiles/{z}/{x}/{y},
+/// worlds/{name}/heights
+void add_world_routes(RestRouter* router, const WorldRoutes& routes);
+/// What the routes of missions need.
+struct MissionRoutes {
+  server::RunManager* runs = nullptr;
+  server::MapService* maps = nullptr;
+  ReadingRoutes readers;
+};
+/// missions/report, scenarios/{name}/plan
+void add_mission_routes(RestRouter* router, const MissionRoutes& routes);
 /// What the routes of flight logs need.
 struct LogRoutes {
   server::LogLibrary* logs = nullptr;
@@ -49,7 +67,7 @@ void add_calibration_session_routes(RestRouter* router, server::CalibrationDesk*
 /// calibrations, calibrations/{name}
 void add_calibration_routes(RestRouter* router, server::CalibrationDesk* desk);
 /// A camera of a scenario for its calibration. Errors: kNotFound; kInvalidArgument.
-[[nodiscard]] Result<server::CameraSpec> scenario_camera(const server::RunManager& runs,
+[[nodiscard]] Result<server::CameraSpec> scenario_camera(server::RunManager& runs,
                                                          const std::string& scenario,
                                                          const std::string& camera);
 

@@ -191,10 +191,10 @@ RestRouter::Handler of_session(CalibrationDesk* desk, SessionHandler handler) {
 
 }  // namespace
 
-Result<server::CameraSpec> scenario_camera(const server::RunManager& runs,
+Result<server::CameraSpec> scenario_camera(server::RunManager& runs,
                                            const std::string& scenario,
                                            const std::string& camera) {
-  const Result<json> document = runs.scenario(scenario);
+  const Result<json> document = runs.library().document(scenario);
   if (!document) return document.error();
   const auto resolved = server::resolve_scenario(*document, {}, {}, runs.data_folders().sources);
   if (!resolved) return resolved.error();

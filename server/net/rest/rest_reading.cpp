@@ -26,8 +26,8 @@ Status read_time(const RouteCall& call, const std::string& name, std::optional<s
   return {};
 }
 
-HttpResponse answer_of(const Result<json>& result) {
-  if (result) return json_response(200, *result);
+HttpResponse answer_of(Result<HttpResponse> result) {
+  if (result) return std::move(*result);
   // The file is the client's choice: that it cannot be read is no failure of the server.
   if (result.error().code == ErrorCode::kUnreadable) {
     return error_response(422, "unreadable", result.error().message);
@@ -40,11 +40,34 @@ HttpResponse answer_of(const Result<json>& result) {
 
 }  // namespace
 
+std::optional<HttpResponse> not_json(const HttpRequest& request) {
+  const std::string type = request.header("content-type");
+  if (type == "application/json" || type.starts_with("application/json;")) return std::nullopt;
+  return error_response(415, "unsupported_media_type", "the body must be application/json");
+}
+
 void read_and_answer(const ReadingRoutes& routes,
                      const std::string& what,
                      const RouteCall& call,
                      const Respond& respond,
                      std::function<Result<json>(const std::atomic<bool>*)> read) {
+  respond_from_reader(
+      routes,
+      what,
+      call,
+      respond,
+      [read = std::move(read)](const std::atomic<bool>* cancel) -> Result<HttpResponse> {
+        const Result<json> result = read(cancel);
+        if (!result) return result.error();
+        return json_response(200, *result);
+      });
+}
+
+void respond_from_reader(const ReadingRoutes& routes,
+                         const std::string& what,
+                         const RouteCall& call,
+                         const Respond& respond,
+                         std::function<Result<HttpResponse>(const std::atomic<bool>*)> read) {
   const auto work = [report = routes.report,
                      what,
                      respond,

@@ -32,6 +32,16 @@ void read_and_answer(const ReadingRoutes& routes,
                      const Respond& respond,
                      std::function<Result<nlohmann::json>(const std::atomic<bool>* cancel)> read);
 
+/// The same with a response of any kind.
+void respond_from_reader(const ReadingRoutes& routes,
+                         const std::string& what,
+                         const RouteCall& call,
+                         const Respond& respond,
+                         std::function<Result<HttpResponse>(const std::atomic<bool>* cancel)> read);
+
+/// The response to a request whose body is not announced as JSON.
+[[nodiscard]] std::optional<HttpResponse> not_json(const HttpRequest& request);
+
 /// Errors: kInvalidArgument naming a parameter and its limit.
 [[nodiscard]] Error bad_query(const std::string& name,
                               const std::string& text,

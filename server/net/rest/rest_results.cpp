@@ -149,6 +149,10 @@ void add_result_routes(RestRouter* router, RunManager* runs) {
         respond(manifest(runs, call.path.at("id")));
       });
   router->add(
+      "GET", "/api/v1/runs/{id}/scenario", [runs](const RouteCall& call, const Respond& respond) {
+        respond(json_or_error(runs->document_of(call.path.at("id"))));
+      });
+  router->add(
       "GET",
       "/api/v1/runs/{id}/trajectories/{name}",
       [runs](const RouteCall& call, const Respond& respond) { respond(trajectory(runs, call)); },

@@ -1,5 +1,6 @@
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -21,6 +22,7 @@ constexpr std::size_t kMaxKeyBytes = 200;
 struct StartBody {
   std::string scenario;
   std::vector<server::Override> overrides;
+  std::optional<json> document;  ///< in place of scenario and overrides
 };
 
 Result<StartBody> parse_start(const std::string& text) {
@@ -28,6 +30,14 @@ Result<StartBody> parse_start(const std::string& text) {
   if (!body) return body.error();
   JsonFields fields(*body, "");
   StartBody start;
+  if (body->contains("document")) {
+    for (const char* other : {"scenario", "overrides"}) {
+      if (body->contains(other)) fields.reject(other, "must not be given with document");
+    }
+    if (const json* document = fields.object("document")) start.document = *document;
+    if (const Status status = fields.finish(); !status) return status.error();
+    return start;
+  }
   fields.require("scenario");
   start.scenario = fields.text("scenario").value_or("");
   if (const json* overrides = fields.object("overrides")) {
@@ -35,11 +45,6 @@ Result<StartBody> parse_start(const std::string& text) {
   }
   if (const Status status = fields.finish(); !status) return status.error();
   return start;
-}
-
-bool is_json(const HttpRequest& request) {
-  const std::string type = request.header("content-type");
-  return type == "application/json" || type.starts_with("application/json;");
 }
 
 /// The response for a run that was refused for lack of room or because of an invalid request.
@@ -54,10 +59,17 @@ HttpResponse start_refusal(const server::StartReport& report, const Error& error
   return error_response(error);
 }
 
+Result<server::RunInfo> start_document(RunManager& runs,
+                                       const json& document,
+                                       const std::string& key,
+                                       server::StartReport* report) {
+  Result<server::Scenario> scenario = runs.library().read(document);
+  if (!scenario) return scenario.error();
+  return runs.start(std::move(*scenario), key, report);
+}
+
 HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
-  if (!is_json(request)) {
-    return error_response(415, "unsupported_media_type", "the body must be application/json");
-  }
+  if (auto refused = not_json(request)) return std::move(*refused);
   const std::string key = request.header("idempotency-key");
   if (key.size() > kMaxKeyBytes) {
     return error_response(
@@ -66,10 +78,13 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   }
   const Result<StartBody> start = parse_start(request.body);
   if (!start) return error_response(start.error());
-  const Status reach = runs->check_overrides(start->scenario, start->overrides);
+  const Status reach = start->document
+                           ? runs->library().check_reach(*start->document)
+                           : runs->library().check_reach(start->scenario, start->overrides);
   if (!reach) return error_response(403, "forbidden", reach.error().message);
   server::StartReport report;
-  const auto info = runs->start(start->scenario, start->overrides, key, &report);
+  const auto info = start->document ? start_document(*runs, *start->document, key, &report)
+                                    : runs->start(start->scenario, start->overrides, key, &report);
   if (!info) return start_refusal(report, info.error());
   HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
   response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);

@@ -212,6 +212,8 @@ json run_json(const server::RunInfo& info) {
           {"seed", info.seed},
           {"attribution", info.attribution},
           {"texture_limited", info.texture_limited},
+          {"queue_position", info.queue_position > 0 ? json(info.queue_position) : json(nullptr)},
+          {"left_s", info.left_s ? json(std::round(*info.left_s * 10.0) / 10.0) : json(nullptr)},
           {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)},
           {"world_change", info.world_change.empty() ? json(nullptr) : json(info.world_change)}};
 }

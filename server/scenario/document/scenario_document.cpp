@@ -44,7 +44,7 @@ Status read_flight(Json& document, const FileResolver& files, Scenario& scenario
     return {};
   }
   if (flight.contains("mission")) {
-    Result<MissionFile> mission = read_mission(flight.at("mission"), files);
+    Result<ScenarioMission> mission = read_mission(flight.at("mission"), files);
     if (!mission) return mission.error();
     scenario.flight = std::move(*mission);
     return {};

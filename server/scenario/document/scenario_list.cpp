@@ -28,6 +28,8 @@ ScenarioEntry entry_of(const fs::path& file, const SourcePolicy& sources) {
   scenario->sources = sources;
   entry.title = scenario->title;
   entry.description = scenario->description;
+  const nlohmann::json& flight = scenario->resolved.at("flight");
+  if (!flight.empty()) entry.flight = flight.begin().key();
   if (Status status = check_scenario(*scenario); !status) entry.error = status.error().message;
   return entry;
 }
@@ -126,10 +128,11 @@ Status check_mission_files(const Scenario& scenario) {
   if (const auto& flown = scenario.course_dynamics; flown && flown->airframe.name.empty()) {
     return scenario.sources.check(flown->airframe.file, "flight.course.dynamics");
   }
-  const auto* mission = std::get_if<MissionFile>(&scenario.flight);
+  const auto* mission = std::get_if<ScenarioMission>(&scenario.flight);
   if (mission == nullptr) return {};
-  if (Status status = scenario.sources.check(mission->file, "flight.mission.file"); !status) {
-    return status;
+  if (mission->plan.empty()) {
+    Status status = scenario.sources.check(mission->file, "flight.mission.file");
+    if (!status) return status;
   }
   if (!mission->airframe.name.empty()) return {};
   return scenario.sources.check(mission->airframe.file, "flight.mission.airframe");

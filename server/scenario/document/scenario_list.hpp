@@ -15,7 +15,9 @@ struct ScenarioEntry {
   std::filesystem::path file;
   std::string title;
   std::string description;
-  std::string error;  ///< why it cannot be flown on this machine; empty if it can
+  std::string error;   ///< why it cannot be flown on this machine; empty if it can
+  std::string flight;  ///< its kind: "course", "mission", ...; empty if it cannot be read
+  bool saved = false;  ///< by a client of the server (SavedScenarios)
 };
 
 /// All `*.json` files that are scenarios (not schemas), sorted by name, each with the reason if it

@@ -57,6 +57,7 @@ export async function startServer({
   if (tokenFile !== null) args.push('--token-file', tokenFile);
   args.push('--scenarios', scenarios, '--web', kWeb);
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
+  args.push('--saved-scenarios', path.join(path.dirname(runs), 'saved'));
   for (const folder of data) args.push('--data', folder);
   for (const link of links) args.push('--allow-link', link);
   for (const camera of cameras) args.push('--allow-camera', camera);

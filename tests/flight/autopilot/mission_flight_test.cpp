@@ -63,6 +63,33 @@ TEST(MissionFlight, HoldsHeightAndTrackOverASquareInWind) {
   }
 }
 
+TEST(MissionFlight, LeavesACircleAtItsHeightTowardsTheNextItem) {
+  for (const char* name : kNames) {
+    MissionSetup setup = setup_of(name);
+    MissionItem circle = item_of(MissionCommand::kLoiter, waypoint(0, 800, 360));
+    circle.radius_m = 100.0;
+    circle.until_height = true;
+    setup.mission.items = {circle, waypoint(2000, 800, 360)};
+    double left_at_m = 0.0;
+    double course_deg = 0.0;
+    const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
+      if (at.autopilot().pilot().item() == 1 && left_at_m == 0.0) {
+        const FlightState state = flight_state(at.aircraft());
+        left_at_m = state.position_world_m.z();
+        const Eigen::Vector2d way(2000.0 - state.position_world_m.x(),
+                                  800.0 - state.position_world_m.y());
+        course_deg = deg_from_rad(
+            std::abs(wrap_pi(std::atan2(way.x(), way.y()) -
+                             std::atan2(state.v_world_m_s.x(), state.v_world_m_s.y()))));
+      }
+      return true;
+    });
+    EXPECT_EQ(flight.end(), FlightEnd::kMissionDone) << name;
+    EXPECT_NEAR(left_at_m, 360.0, 6.0) << name;
+    EXPECT_LT(course_deg, 10.5) << name;
+  }
+}
+
 TEST(MissionFlight, StaysInTheAirForAnHourOfModerateTurbulence) {
   for (const char* name : kNames) {
     MissionSetup setup = setup_of(name);

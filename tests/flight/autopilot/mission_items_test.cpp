@@ -95,6 +95,18 @@ TEST(MissionItems, ReadTheParametersOfCommands) {
   EXPECT_THAT(planned.warnings[0], HasSubstr("item 4: command 203 was left out"));
 }
 
+TEST(MissionItems, ReadCirclesUpToAHeight) {
+  PlanItem circle = plan_item(31, kLatDeg + 0.01, kLonDeg, 200.0F);
+  circle.parameters = {1.0F, -90.0F, 0.0F, 1.0F};
+  const PlannedMission planned = plan({circle}).value();
+  ASSERT_THAT(planned.mission.items, SizeIs(1));
+  EXPECT_EQ(planned.mission.items[0].command, MissionCommand::kLoiter);
+  EXPECT_TRUE(planned.mission.items[0].until_height);
+  EXPECT_EQ(planned.mission.items[0].radius_m, -90.0);
+  // It has an end of its own.
+  EXPECT_FALSE(planned.mission.items[0].turns.has_value());
+}
+
 TEST(MissionItems, RejectWhatCannotBeFlown) {
   const auto message = [](const std::vector<PlanItem>& items) {
     const auto planned = plan(items);
@@ -114,7 +126,7 @@ TEST(MissionItems, RejectWhatCannotBeFlown) {
 TEST(MissionItems, FlyTheMissionThatArduPlaneFlew) {
   const auto file = overfly::testing::shared_data("sitl/plane25_mission.waypoints");
   if (!file) GTEST_SKIP() << "no shared data";
-  const auto items = flight::mavlink::read_mission_file(*file).value();
+  const auto items = flight::mavlink::read_mission_file(*file).value().items;
   const LocalFrame frame(geodetic_from_deg(items.front().x, items.front().y, 584.0));
   const auto ground = std::make_shared<FlatGround>(0.0);
   PlannedMission planned = plan_mission(items, frame, *ground, {}).value();

@@ -91,7 +91,8 @@ class DirectExchange final : public Exchange {
 std::vector<flight::mavlink::MissionItem> pattern() {
   return flight::mavlink::read_mission_file(
              overfly::testing::source_file("scenarios/missions/airfield_pattern.waypoints"))
-      .value();
+      .value()
+      .items;
 }
 
 TEST(SimulatedVehicle, TellsAndTakesItsParameters) {

@@ -38,7 +38,7 @@ class CalibrationDeskTest : public ::testing::Test {
   [[nodiscard]] DeskOptions options() const {
     DeskOptions options;
     options.folders = [this] {
-      return LogFolders{{}, {data()}, SourcePolicy::inside({data()})};
+      return ServedFolders{{}, {data()}, SourcePolicy::inside({data()})};
     };
     options.scenario_camera = [](const std::string& scenario, const std::string& camera) {
       if (scenario != "course") return Result<CameraSpec>(Error{ErrorCode::kNotFound, "none"});

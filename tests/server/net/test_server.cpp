@@ -65,6 +65,7 @@ TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOpti
 
   options.runs_folder = folder() / "runs";
   options.scenarios_folder = scenarios;
+  options.saved_scenarios_folder = folder() / "saved";
   options.data_folders = {world_folder, logs, uploads};
   server_options.uploads_folder = uploads;
   options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles)

@@ -18,7 +18,7 @@ namespace overfly::testing {
 
 /// Scenarios: "tiny" (2 s in lockstep, estimator "perfect", frames recorded), "slow" (60 s in
 /// real time, the same estimator) and "broken" (a field at fault). Flight logs: folder() / "logs",
-/// empty, and uploads in folder() / "uploads".
+/// empty, and uploads in folder() / "uploads"; saved scenarios in folder() / "saved".
 class TestServer {
  public:
   /// @param token  that clients must show; empty = none

@@ -52,9 +52,9 @@ TEST_F(OddNames, BesideTheScenariosAndTheRuns) {
   loop(root() / "runs" / "loop");
   fs::create_directories(root() / "runs" / "odd");
   loop(manifest_file(root() / "runs" / "odd"));
-  EXPECT_EQ(runs->scenarios().size(), 2U);
-  EXPECT_FALSE(runs->scenario("loop").ok());
-  EXPECT_FALSE(runs->scenario(std::string(300, 'x')).ok());
+  EXPECT_EQ(runs->library().list().size(), 2U);
+  EXPECT_FALSE(runs->library().document("loop").ok());
+  EXPECT_FALSE(runs->library().document(std::string(300, 'x')).ok());
   EXPECT_EQ(runs->runs().size(), 1U);
   for (const std::string& id : {std::string("loop"), std::string("odd"), std::string(300, 'x')}) {
     EXPECT_FALSE(runs->run(id).ok()) << id;

@@ -62,9 +62,9 @@ TEST_F(RunManagerTest, FliesOverFilesInsideOfItsDataFoldersOnly) {
   const auto bare = confined_manager({});
   EXPECT_THAT(bare->start("small", {}).error().message,
               HasSubstr("world.manifest = " + testing::small_world().string() + outside));
-  EXPECT_THAT(bare->scenarios().at(0).error, HasSubstr(outside));
+  EXPECT_THAT(bare->library().list().at(0).error, HasSubstr(outside));
   const auto runs = confined_manager({testing::small_world().parent_path()});
-  EXPECT_EQ(runs->scenarios().at(0).error, "");
+  EXPECT_EQ(runs->library().list().at(0).error, "");
   const auto started = runs->start("small", perfect());
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kCompleted);
@@ -88,11 +88,12 @@ TEST_F(RunManagerTest, OpensOnlyTheLinksThatTheOperatorAllows) {
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kFailed);  // nobody listens
   // Another link, or what the vehicle has to do, only as in the scenario's file.
-  EXPECT_TRUE(runs->check_overrides("live", {{"duration_s", 1}}).ok());
+  EXPECT_TRUE(runs->library().check_reach("live", {{"duration_s", 1}}).ok());
   EXPECT_THAT(
-      runs->check_overrides("live", {{"flight.mavlink.arm_and_start", true}}).error().message,
+      runs->library().check_reach("live", {{"flight.mavlink.arm_and_start", true}}).error().message,
       HasSubstr("flight.mavlink: must be as in the scenario's file"));
-  EXPECT_FALSE(runs->check_overrides("small", {{"flight.mavlink.link", "tcp:127.0.0.1:1"}}).ok());
+  EXPECT_FALSE(
+      runs->library().check_reach("small", {{"flight.mavlink.link", "tcp:127.0.0.1:1"}}).ok());
 }
 
 TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
@@ -238,8 +239,8 @@ TEST_F(RunManagerTest, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(runs->folder("..").error().code, ErrorCode::kNotFound);
   EXPECT_EQ(runs->folder("a/b").error().code, ErrorCode::kNotFound);
   EXPECT_EQ(runs->timeline("no").error().code, ErrorCode::kNotFound);
-  EXPECT_EQ(runs->scenario("small").value().at("camera").at("width_px"), 160);
-  ASSERT_EQ(runs->scenarios().size(), 1U);
+  EXPECT_EQ(runs->library().document("small").value().at("camera").at("width_px"), 160);
+  ASSERT_EQ(runs->library().list().size(), 1U);
 }
 
 /// A run of a file on the server's disk may be repeated, but not with other names in it.
@@ -250,7 +251,7 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   overfly::testing::write_text(root() / "scenarios" / "doors.json", document.dump());
   const auto runs = manager();
   const auto check = [&](const char* text) {
-    return runs->check_overrides("doors", {parse_override(text).value()});
+    return runs->library().check_reach("doors", {parse_override(text).value()});
   };
   EXPECT_TRUE(check("duration_s=1").ok());
   EXPECT_TRUE(check(R"(estimators.0.parameters={"features":1000})").ok());
@@ -260,10 +261,10 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   ASSERT_FALSE(other.ok());
   EXPECT_THAT(other.error().message, HasSubstr("estimators.0.command"));
   EXPECT_FALSE(check(R"(estimators.0.command.0="/bin/sh")").ok());
-  EXPECT_TRUE(
-      trusting_manager()
-          ->check_overrides("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
-          .ok());
+  EXPECT_TRUE(trusting_manager()
+                  ->library()
+                  .check_reach("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
+                  .ok());
 }
 
 }  // namespace

@@ -66,11 +66,11 @@ TEST(ScenarioRos, NamesWhatIsWrong) {
 TEST(ScenarioRos, MayBeChangedByClientsOnlyWithCommands) {
   const Scenario ros = small_scenario({"flight.ros.position=global"});
   const Scenario elsewhere = small_scenario({"flight.ros.master_uri=http://10.0.0.2:11311"});
-  EXPECT_TRUE(check_reach(ros, ros).ok());
-  const Status refused = check_reach(elsewhere, ros);
+  EXPECT_TRUE(check_reach(ros, {ros}).ok());
+  const Status refused = check_reach(elsewhere, {ros});
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr("flight.ros: must be as in the scenario's file"));
-  EXPECT_FALSE(check_reach(ros, small_scenario()).ok());
+  EXPECT_FALSE(check_reach(ros, {small_scenario()}).ok());
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST(Scenario, FliesAMissionFile) {
                                   "flight.mission.home={\"east_m\": 5, \"north_m\": -6}"}),
                        "/tmp/scenarios");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
-  const auto& mission = std::get<MissionFile>(scenario->flight);
+  const auto& mission = std::get<ScenarioMission>(scenario->flight);
   EXPECT_EQ(mission.file, "/tmp/scenarios/plan.waypoints");
   EXPECT_EQ(mission.airframe.name, "foam_trainer");
   EXPECT_EQ(mission.airspeed_m_s, 11.0);
@@ -102,6 +102,35 @@ TEST(Scenario, FliesAMissionFile) {
   EXPECT_THAT(error_of(course_document(),
                        {"flight.mission.file=./plan.waypoints", "flight.mission.airframe=x"}),
               HasSubstr("flight.mission.airframe = \"x\": must be one of aerosonde, "));
+}
+
+TEST(Scenario, FliesAMissionWithinTheScenario) {
+  const std::string plan = R"({"fileType": "Plan", "version": 1, "mission": {"version": 2,
+      "plannedHomePosition": [39.355375, -86.030728, 227.7], "items": [{"type": "SimpleItem",
+      "command": 16, "frame": 3, "params": [0, 0, 0, null, 39.36, -86.03, 150]}]}})";
+  const Result<Scenario> scenario =
+      resolve_scenario(course_document(), overrides({"flight.mission.plan=" + plan}), "/tmp");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  const auto& mission = std::get<ScenarioMission>(scenario->flight);
+  EXPECT_TRUE(mission.file.empty());
+  EXPECT_EQ(nlohmann::json::parse(mission.plan), nlohmann::json::parse(plan));
+  EXPECT_EQ(mission.airspeed_m_s, 25.0);
+  EXPECT_TRUE(check_scenario(*scenario).ok());
+  // A run's copy of the scenario contains the mission.
+  EXPECT_EQ(scenario->resolved.at("flight").at("mission").at("plan"), nlohmann::json::parse(plan));
+}
+
+TEST(Scenario, NamesTheFieldOfAPlanThatIsWrong) {
+  const std::string head = "flight.mission.plan={\"fileType\": \"Plan\", \"mission\": ";
+  EXPECT_THAT(error_of(course_document(), {head + "{\"version\": 1}}"}),
+              HasSubstr("flight.mission.plan.mission.version = 1: must be 2"));
+  EXPECT_THAT(error_of(course_document(), {"flight.mission.plan={}"}),
+              HasSubstr("flight.mission.plan.mission: must be given"));
+  EXPECT_THAT(error_of(course_document(), {"flight.mission.airspeed_m_s=20"}),
+              HasSubstr("must be exactly one of a mission with a file, a mission with a plan"));
+  EXPECT_THAT(
+      error_of(course_document(), {"flight.mission.file=a.plan", head + "{\"version\": 2}}"}),
+      HasSubstr("must be exactly one of a mission with a file, a mission with a plan"));
 }
 
 TEST(Scenario, RejectsWindAndTurbulenceWithoutAnAirframe) {

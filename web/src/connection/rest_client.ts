@@ -17,6 +17,13 @@ import type {
   TrajectoryList,
 } from '../protocol/score_types';
 import type { Cell } from '../protocol/messages';
+import type {
+  Heights,
+  MissionReport,
+  MissionRequest,
+  World,
+  WorldEntry,
+} from '../protocol/mission_types';
 import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
 import type { SensorCurves } from '../protocol/sensor_types';
@@ -66,6 +73,57 @@ export class RestClient {
     return (await this.call('GET', '/scenario-schema')) as JsonObject;
   }
 
+  /** Saves a scenario of the viewer. */
+  async saveScenario(name: string, document: JsonObject, replace: boolean): Promise<void> {
+    const query = replace ? '?replace=true' : '';
+    await this.call('PUT', `/scenarios/${encodeURIComponent(name)}${query}`, document);
+  }
+
+  async deleteScenario(name: string): Promise<void> {
+    await this.call('DELETE', `/scenarios/${encodeURIComponent(name)}`);
+  }
+
+  /** The mission of a scenario as a plan. */
+  async scenarioPlan(name: string): Promise<JsonObject> {
+    return (await this.call('GET', `/scenarios/${encodeURIComponent(name)}/plan`)) as JsonObject;
+  }
+
+  async worlds(): Promise<WorldEntry[]> {
+    return ((await this.call('GET', '/worlds')) as { worlds: WorldEntry[] }).worlds;
+  }
+
+  /** The server opens the world for it, which may take seconds. */
+  async world(name: string): Promise<World> {
+    return (await this.call('GET', `/worlds/${encodeURIComponent(name)}`)) as World;
+  }
+
+  /** Makes a built-in world. @param id  for progress(), of this request only */
+  async makeWorld(name: string, id: string): Promise<World> {
+    const place = `/worlds/${encodeURIComponent(name)}/make?progress=${encodeURIComponent(id)}`;
+    return (await this.call('POST', place)) as World;
+  }
+
+  /** Address of a world's map tiles, with {z}, {x} and {y} in it. */
+  tileAddress({ name, version }: World): string {
+    const place = `${this.base}/worlds/${encodeURIComponent(name)}/tiles/{z}/{x}/{y}`;
+    return `${place}?version=${encodeURIComponent(version)}`;
+  }
+
+  /** @param points  latitude and longitude */
+  async heights(
+    world: string,
+    points: readonly (readonly [number, number])[],
+    signal: AbortSignal,
+  ): Promise<Heights> {
+    const place = `/worlds/${encodeURIComponent(world)}/heights`;
+    return (await this.call('POST', place, { points }, {}, signal)) as Heights;
+  }
+
+  /** The server stops working on it when `signal` aborts. */
+  async missionReport(request: MissionRequest, signal: AbortSignal): Promise<MissionReport> {
+    return (await this.call('POST', '/missions/report', request, {}, signal)) as MissionReport;
+  }
+
   async manifest(run: string): Promise<Manifest> {
     return (await this.call('GET', `/runs/${encodeURIComponent(run)}/manifest`)) as Manifest;
   }
@@ -110,6 +168,12 @@ export class RestClient {
   async startRun(scenario: string, overrides: Record<string, Json>, key: string): Promise<Run> {
     const headers = { 'Idempotency-Key': key };
     return (await this.call('POST', '/runs', { scenario, overrides }, headers)) as Run;
+  }
+
+  /** Flies a whole scenario. Repeated requests with the same `key` give the same run. */
+  async startDocument(document: JsonObject, key: string): Promise<Run> {
+    const headers = { 'Idempotency-Key': key };
+    return (await this.call('POST', '/runs', { document }, headers)) as Run;
   }
 
   async cancelRun(id: string): Promise<void> {

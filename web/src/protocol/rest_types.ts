@@ -29,6 +29,10 @@ export interface Run {
   attribution: string;
   /** The imagery, not the camera, limits the result. */
   texture_limited: boolean;
+  /** Of a waiting run, 1 = next. */
+  queue_position: number | null;
+  /** Time until a flying run ends, as far as it is known. */
+  left_s: number | null;
   /** The step in progress before the first frame. */
   notice: string | null;
   /** Files of the run's world that have changed since the flight. */
@@ -55,6 +59,10 @@ export interface ScenarioEntry {
   description: string;
   /** Why it cannot be flown on this machine; null if it can. */
   error: string | null;
+  /** Its kind: course, mission, log, ...; '' = it cannot be read. */
+  flight: string;
+  /** By a viewer: it can be replaced and deleted. */
+  saved: boolean;
 }
 
 /** Any JSON value: scenario documents are read by path, not by type. */

@@ -15,6 +15,8 @@ import { initialCalibrationPage } from './calibration/calibration_page';
 import { kDefaultAlignment } from './error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
+import type { MissionPage } from './missions/mission_page';
+import { initialMissionPage } from './missions/mission_page';
 import type { PictureRate } from './pictures/picture_rates';
 import type { Zoom } from './pictures/picture_zoom';
 import type { Hover } from './pictures/pixel_probe';
@@ -84,6 +86,7 @@ export class State {
   logPage: LogPage = initialLogPage();
   scorePage: ScorePage = initialScorePage();
   calibrationPage: CalibrationPage = initialCalibrationPage();
+  missionPage: MissionPage = initialMissionPage();
 
   // ---- the main run ----------------------------------------------------------------------------
 
@@ -182,6 +185,8 @@ const kTopicNames = [
   'logs',
   'scoring',
   'calibration',
+  'missions',
+  'missionCursor',
   'layout',
   'theme',
   'palette',

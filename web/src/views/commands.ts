@@ -94,9 +94,23 @@ function shortcutCommands(context: Context): Command[] {
     }));
 }
 
-function pageCommands({ calibration, catalogue, connect, logs, scores }: Context): Command[] {
+function pageCommands({
+  calibration,
+  catalogue,
+  connect,
+  logs,
+  missions,
+  scores,
+}: Context): Command[] {
   const group = 'Page';
   return [
+    {
+      id: 'missions',
+      group,
+      title: 'Missions on a map',
+      words: 'draw plan waypoints qgroundcontrol',
+      run: () => void missions.open(),
+    },
     {
       id: 'scoring',
       group,

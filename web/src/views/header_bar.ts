@@ -77,12 +77,7 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
-      pageButton('Calibrate', 'open-calibration', 'Calibrate a camera', () => {
-        void context.calibration.open();
-      }),
-      pageButton('Score files', 'open-scores', 'Score trajectories of files, runs and logs', () => {
-        void context.scores.open();
-      }),
+      ...pageButtons(context),
       this.layouts.root,
       this.themes.root,
       this.connection,
@@ -173,6 +168,28 @@ export class HeaderBar implements View {
   }
 }
 
-function pageButton(label: string, role: string, hint: string, open: () => void): HTMLElement {
-  return h('button', { class: 'tab', 'data-role': role, title: hint, onclick: open }, label);
+/** Of the pages over the dashboard. */
+function pageButtons(context: Context): HTMLElement[] {
+  return [
+    pageButton('calibration', 'Calibrate', 'Calibrate a camera', () => context.calibration.open()),
+    pageButton('missions', 'Missions', 'Draw missions on a map, check and fly them', () =>
+      context.missions.open(),
+    ),
+    pageButton('scores', 'Score files', 'Score trajectories of files, runs and logs', () =>
+      context.scores.open(),
+    ),
+  ];
+}
+
+function pageButton(
+  name: string,
+  label: string,
+  title: string,
+  open: () => Promise<void>,
+): HTMLElement {
+  return h(
+    'button',
+    { class: 'tab', 'data-role': `open-${name}`, title, onclick: () => void open() },
+    label,
+  );
 }

@@ -1,4 +1,4 @@
-// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera.
+// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera, missions.
 import { PageOverlay } from './page_overlay';
 import type { Context, View } from './view';
 
@@ -23,10 +23,19 @@ export function makePages(context: Context): View[] {
       load: async (owner) =>
         new (await import('./calibration/calibration_page')).CalibrationPageView(owner),
     }),
+    new PageOverlay(context, {
+      name: 'missions',
+      topic: 'missions',
+      page: ({ missionPage }) => missionPage,
+      load: async (owner) => new (await import('./missions/mission_page')).MissionPageView(owner),
+    }),
   ];
 }
 
-/** Files dropped anywhere are uploaded: to the page that is open, else as logs. */
+/**
+ * Files dropped anywhere are read: as missions where those are drawn, as images where a camera is
+ * calibrated, as trajectories where those are scored, else as logs.
+ */
 export function acceptFiles(context: Context): void {
   const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
   document.addEventListener('dragover', (event) => {
@@ -37,8 +46,9 @@ export function acceptFiles(context: Context): void {
     event.preventDefault();
     const files = [...(event.dataTransfer?.files ?? [])];
     if (files.length === 0) return;
-    const { scorePage, calibrationPage } = context.store.state;
-    if (calibrationPage.open) void context.calibration.send(files);
+    const { scorePage, calibrationPage, missionPage } = context.store.state;
+    if (missionPage.open && files[0] !== undefined) void context.missions.import(files[0]);
+    else if (calibrationPage.open) void context.calibration.send(files);
     else if (scorePage.open) void context.scores.send(files);
     else void context.logs.open().then(() => context.logs.send(files));
   });

@@ -196,6 +196,7 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.logPage.open = false;
   store.state.scorePage.open = false;
   store.state.calibrationPage.open = false;
-  store.change('help', 'logs', 'palette', 'scoring', 'calibration');
+  store.state.missionPage.open = false;
+  store.change('help', 'logs', 'missions', 'palette', 'scoring', 'calibration');
   layouts.restore();
 }

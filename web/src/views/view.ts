@@ -10,6 +10,8 @@ import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
 import type { Layouts } from '../store/layouts/layouts';
+import type { MissionDesk } from '../store/missions/mission_desk';
+import type { RestClient } from '../connection/rest_client';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
@@ -44,6 +46,8 @@ export interface Context {
   connect: VehicleConnect;
   scores: ScoreDesk;
   calibration: CalibrationDesk;
+  missions: MissionDesk;
+  rest: RestClient;
   notices: Notices;
   client: StreamClient;
   layouts: Layouts;

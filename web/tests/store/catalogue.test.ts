@@ -10,7 +10,14 @@ import { WatchedRun } from '../../src/store/watched_run';
 import { sampleRun } from '../support/samples';
 
 const document = { seed: 1, pacing: 'lockstep', estimators: [] };
-const kScenario = { name: 'course', title: 'Course', description: '', error: null };
+const kScenario = {
+  name: 'course',
+  title: 'Course',
+  description: '',
+  error: null,
+  flight: 'course',
+  saved: false,
+};
 
 /** A catalogue whose server answers by method and path. */
 function catalogue(answers: Record<string, () => [number, unknown]>) {

@@ -21,6 +21,8 @@ export function sampleRun(change: Partial<Run> = {}): Run {
     seed: 1,
     attribution: '',
     texture_limited: false,
+    queue_position: null,
+    left_s: null,
     notice: null,
     world_change: null,
     ...change,

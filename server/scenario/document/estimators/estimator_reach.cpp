@@ -6,26 +6,33 @@
 namespace overfly::server {
 namespace {
 
+using Trusted = std::vector<Scenario>;
+
+template <typename Condition>
+bool any_estimator(const Trusted& trusted, const Condition& condition) {
+  return std::any_of(trusted.begin(), trusted.end(), [&](const Scenario& scenario) {
+    return std::any_of(scenario.estimators.begin(), scenario.estimators.end(), condition);
+  });
+}
+
 /// True if the field has its default value, or the value of some trusted estimator.
 template <typename Field>
-bool is_trusted(const EstimatorSpec& spec, const Scenario& trusted, const Field& field) {
+bool is_trusted(const EstimatorSpec& spec, const Trusted& trusted, const Field& field) {
   if (field(spec) == field(EstimatorSpec())) return true;
-  return std::any_of(trusted.estimators.begin(),
-                     trusted.estimators.end(),
-                     [&](const EstimatorSpec& known) { return field(spec) == field(known); });
+  return any_estimator(trusted,
+                       [&](const EstimatorSpec& known) { return field(spec) == field(known); });
 }
 
 /// Text with a slash may name a file that the estimator then reads, such as a vocabulary or a
 /// calibration.
-const std::string* untrusted_parameter(const EstimatorSpec& spec, const Scenario& trusted) {
+const std::string* untrusted_parameter(const EstimatorSpec& spec, const Trusted& trusted) {
   for (const auto& [name, value] : spec.parameters) {
     const auto* text = std::get_if<std::string>(&value);
     if (text == nullptr || text->find('/') == std::string::npos) continue;
-    const bool known = std::any_of(
-        trusted.estimators.begin(), trusted.estimators.end(), [&, key = name](const auto& other) {
-          const auto same = other.parameters.find(key);
-          return same != other.parameters.end() && same->second == ParameterValue(*text);
-        });
+    const bool known = any_estimator(trusted, [&, key = name](const EstimatorSpec& other) {
+      const auto same = other.parameters.find(key);
+      return same != other.parameters.end() && same->second == ParameterValue(*text);
+    });
     if (!known) return &name;
   }
   return nullptr;
@@ -50,7 +57,7 @@ Status check_link(const Scenario& scenario, const std::vector<std::string>& allo
       "flight.mavlink.link = " + link + ": the server was not started with --allow-link " + link};
 }
 
-Status check_reach(const Scenario& scenario, const Scenario& trusted) {
+Status check_reach(const Scenario& scenario, const Trusted& trusted) {
   for (const char* const kind : {"mavlink", "ros"}) {
     const auto live_of = [kind](const Scenario& each) {
       const auto flight = each.resolved.find("flight");
@@ -58,7 +65,10 @@ Status check_reach(const Scenario& scenario, const Scenario& trusted) {
                                            : nlohmann::json();
     };
     const nlohmann::json wanted = live_of(scenario);
-    if (!wanted.is_null() && wanted != live_of(trusted)) {
+    const bool known = std::any_of(trusted.begin(), trusted.end(), [&](const Scenario& each) {
+      return live_of(each) == wanted;
+    });
+    if (!wanted.is_null() && !known) {
       return Error{ErrorCode::kInvalidArgument,
                    std::string("flight.") + kind +
                        ": must be as in the scenario's file; clients may set it only if the server "

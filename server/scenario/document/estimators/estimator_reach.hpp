@@ -10,9 +10,9 @@ namespace overfly::server {
 
 /// Rejects settings that only the machine's own scenarios may contain: an estimator whose command,
 /// addresses or parameters that may name files (text with a slash) differ from those of every
-/// estimator in `trusted`, and a live flight that differs from that of `trusted`.
+/// estimator of the `trusted` scenarios, and a live flight that differs from that of each of them.
 /// Errors: kInvalidArgument naming the field.
-[[nodiscard]] Status check_reach(const Scenario& scenario, const Scenario& trusted);
+[[nodiscard]] Status check_reach(const Scenario& scenario, const std::vector<Scenario>& trusted);
 
 /// Rejects a live flight on a link that is not one of `allowed`.
 /// Errors: kInvalidArgument naming the field.

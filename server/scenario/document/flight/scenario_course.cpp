@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "flight/mavlink/vehicle/plan_file.hpp"
 #include "server/scenario/document/flight/scenario_airframe.hpp"
 
 namespace overfly::server {
@@ -74,13 +75,35 @@ Status read_course(Json& course, const FileResolver& files, Scenario& scenario) 
   return read_dynamics(course, files, scenario);
 }
 
-Result<MissionFile> read_mission(Json& mission, const FileResolver& files) {
-  MissionFile flight;
+namespace {
+
+/// The plan's text. Errors: kInvalidArgument naming the field.
+Result<std::string> read_plan(const Json& plan) {
+  const std::string field = "flight.mission.plan";
+  std::string text = plan.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const auto mission = flight::mavlink::parse_plan(text, field);
+  if (mission) return text;
+  // The field of the plan as one of the scenario: "flight.mission.plan.mission.items.0.frame = 9".
+  std::string message = mission.error().message;
+  if (message.starts_with(field + ": ")) message.replace(field.size(), 2, ".");
+  return Error{ErrorCode::kInvalidArgument, message};
+}
+
+}  // namespace
+
+Result<ScenarioMission> read_mission(Json& mission, const FileResolver& files) {
+  ScenarioMission flight;
   Result<AirframeChoice> airframe =
       read_airframe_choice(mission, "airframe", "flight.mission", files);
   if (!airframe) return airframe.error();
   flight.airframe = std::move(*airframe);
-  flight.file = files.resolve(mission.at("file"));
+  if (mission.contains("plan")) {
+    Result<std::string> plan = read_plan(mission.at("plan"));
+    if (!plan) return plan.error();
+    flight.plan = std::move(*plan);
+  } else {
+    flight.file = files.resolve(mission.at("file"));
+  }
   flight.airspeed_m_s = mission.at("airspeed_m_s").get<double>();
   const Json& home = mission.at("home");
   flight.home_at_runway = home == "runway";

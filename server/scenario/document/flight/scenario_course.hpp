@@ -17,7 +17,8 @@ namespace overfly::server {
                                  Scenario& scenario);
 
 /// @param mission  as above; the paths of mission and airframe files are resolved
-/// Errors: as read_airframe_choice.
-[[nodiscard]] Result<MissionFile> read_mission(nlohmann::json& mission, const FileResolver& files);
+/// Errors: as read_airframe_choice; kInvalidArgument naming a field of the plan.
+[[nodiscard]] Result<ScenarioMission> read_mission(nlohmann::json& mission,
+                                                   const FileResolver& files);
 
 }  // namespace overfly::server

@@ -226,8 +226,10 @@ TEST(Mission, IsNotHeldUpByAVehicleThatAsksForever) {
 
 TEST(MissionFile, IsReadAsAGroundStationWroteIt) {
   OVERFLY_DATA_OR_SKIP(file, "sitl/plane25_mission.waypoints");
-  const Result<std::vector<MissionItem>> items = read_mission_file(file);
-  ASSERT_TRUE(items.ok()) << items.error().message;
+  const Result<StoredMission> mission = read_mission_file(file);
+  ASSERT_TRUE(mission.ok()) << mission.error().message;
+  EXPECT_TRUE(mission->warnings.empty());
+  const std::vector<MissionItem>* const items = &mission->items;
   ASSERT_EQ(items->size(), 21U);
   EXPECT_EQ((*items)[0].frame, 0);
   EXPECT_TRUE((*items)[0].current);
@@ -254,7 +256,7 @@ TEST(MissionFile, NamesFileLineColumnValueAndLimit) {
   const auto file = folder.path() / "mission.waypoints";
   const auto message_of = [&](const std::string& text) {
     overfly::testing::write_text(file, text);
-    const Result<std::vector<MissionItem>> items = read_mission_file(file);
+    const Result<StoredMission> items = read_mission_file(file);
     return items.ok() ? std::string() : items.error().message;
   };
   const std::string head = "QGC WPL 110\n";

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -181,6 +182,121 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   const Answer schema = check("GET", "/api/v1/scenario-schema", "/api/v1/scenario-schema", 200);
   EXPECT_EQ(schema.body, server::scenario_schema_text());
 
+  const std::string scenario = "/api/v1/scenarios/{name}";
+  const json tiny = ask(server_.port(), "GET", "/api/v1/scenarios/tiny").json();
+  const std::string mine = "/api/v1/scenarios/mine";
+  const Answer saved = check("PUT", scenario, mine, 201, tiny.dump(), kJson);
+  EXPECT_EQ(saved.headers.at("location"), mine);
+  check("PUT", scenario, mine, 409, tiny.dump(), kJson);
+  check("PUT", scenario, mine + "?replace=true", 200, tiny.dump(), kJson);
+  check("PUT", scenario, mine + "?replace=yes", 400, tiny.dump(), kJson);
+  check("PUT", scenario, mine, 415, tiny.dump());
+  check("PUT", scenario, "/api/v1/scenarios/tiny?replace=true", 403, tiny.dump(), kJson);
+  check("PUT", scenario, "/api/v1/scenarios/..%2Ftiny", 400, tiny.dump(), kJson);
+  check("DELETE", scenario, "/api/v1/scenarios/tiny", 403);
+  check("DELETE", scenario, mine, 204);
+  check("DELETE", scenario, mine, 404);
+  const std::string checks = "/api/v1/scenario-check";
+  const auto checked = [&](const json& document, int status) {
+    return check("POST", checks, checks, status, json{{"document", document}}.dump(), kJson);
+  };
+  EXPECT_EQ(checked(tiny, 200).json().at("valid"), true);
+  json wrong = tiny;
+  wrong["camera"]["rate_hz"] = -1;
+  wrong.erase("flight");
+  const json verdict = checked(wrong, 200).json();
+  EXPECT_EQ(verdict.at("valid"), false);
+  std::set<std::string> fields;
+  for (const json& fault : verdict.at("faults")) fields.insert(fault.at("field"));
+  EXPECT_EQ(fields, (std::set<std::string>{"camera.rate_hz", "flight"}));
+  checked(3, 400);
+  check("POST", checks, checks, 415, "{}");
+
+  const std::string worlds = "/api/v1/worlds";
+  const std::string ground = worlds + "/scenario:tiny";
+  EXPECT_EQ(check("GET", worlds, worlds, 200).json().at("worlds").at(0).at("name"), "builtin:1");
+  const json described = check("GET", worlds + "/{name}", ground, 200).json();
+  check("GET", worlds + "/{name}", worlds + "/none", 404);
+  check("POST", worlds + "/{name}/make", ground + "/make?progress=12345678", 200);
+  check("POST", worlds + "/{name}/make", ground + "/make?progress=1", 400);
+  const std::string tiles = worlds + "/{name}/tiles/{z}/{x}/{y}";
+  const int zoom = described.at("max_zoom");
+  const double lat = described.at("centre").at("lat_deg").get<double>() * 0.017453292519943295;
+  const double lon = described.at("centre").at("lon_deg").get<double>();
+  const int column = static_cast<int>((lon + 180.0) / 360.0 * (1 << zoom));
+  const int row =
+      static_cast<int>((0.5 - std::asinh(std::tan(lat)) / (2.0 * 3.14159265358979)) * (1 << zoom));
+  const std::string tile = ground + "/tiles/" + std::to_string(zoom) + "/" +
+                           std::to_string(column) + "/" + std::to_string(row);
+  const std::string version = described.at("version");
+  const Answer drawn_tile = check("GET", tiles, tile + "?version=" + version, 200);
+  EXPECT_THAT(drawn_tile.headers.at("cache-control"), HasSubstr("immutable"));
+  EXPECT_EQ(check("GET", tiles, tile, 200).headers.at("cache-control"), "no-cache");
+  check("GET", tiles, ground + "/tiles/3/0/0", 200);
+  check("GET", tiles, ground + "/tiles/3/8/0", 400);
+  check("GET", tiles, ground + "/tiles/x/8/0", 400);
+  check("GET", tiles, worlds + "/none/tiles/3/0/0", 404);
+  const std::string heights = worlds + "/{name}/heights";
+  const json place = {described.at("centre").at("lat_deg"), described.at("centre").at("lon_deg")};
+  const json measured = check("POST",
+                              heights,
+                              ground + "/heights",
+                              200,
+                              json{{"points", {place, {10.0, 10.0}}}}.dump(),
+                              kJson)
+                            .json();
+  EXPECT_EQ(measured.at("imagery"), (json{true, false}));
+  EXPECT_NEAR(measured.at("alt_ellipsoid_m").at(0).get<double>(),
+              described.at("centre").at("alt_ellipsoid_m").get<double>(),
+              0.01);
+  for (const json& points : {json::array(),
+                             json{{91, 0}},
+                             json{{1, 2, 3}},
+                             json{7},
+                             json(std::vector<json>(2001, place))}) {
+    check("POST", heights, ground + "/heights", 400, json{{"points", points}}.dump(), kJson);
+  }
+  check("POST", heights, worlds + "/none/heights", 404, json{{"points", {place}}}.dump(), kJson);
+
+  const std::string missions = "/api/v1/missions/report";
+  const auto mission_of = [&](int command) {
+    json document = tiny;
+    const json home = {place[0], place[1], 230.0};
+    const json params = {0, 0, 0, nullptr, place[0], place[1].get<double>() + 0.01, 150};
+    document["flight"] = {{"mission",
+                           {{"plan",
+                             {{"fileType", "Plan"},
+                              {"mission",
+                               {{"version", 2},
+                                {"plannedHomePosition", home},
+                                {"items",
+                                 {{{"type", "SimpleItem"},
+                                   {"command", command},
+                                   {"frame", 3},
+                                   {"params", params}}}}}}}}}}};
+    return document;
+  };
+  const json limits = {{"min_clearance_m", 100}, {"max_bank_deg", 30}};
+  const json wanted = {{"document", mission_of(16)}, {"limits", limits}, {"samples", 50}};
+  const json report = check("POST", missions, missions, 200, wanted.dump(), kJson).json();
+  EXPECT_EQ(report.at("items").at(0).at("item"), 1);
+  const std::string planned = "/api/v1/scenarios/planned";
+  check("PUT", scenario, planned, 201, mission_of(16).dump(), kJson);
+  EXPECT_EQ(check("GET", scenario + "/plan", planned + "/plan", 200).json(),
+            mission_of(16).at("flight").at("mission").at("plan"));
+  check("GET", scenario + "/plan", "/api/v1/scenarios/tiny/plan", 400);
+  check("GET", scenario + "/plan", "/api/v1/scenarios/none/plan", 404);
+  check("DELETE", scenario, planned, 204);
+  const auto refused = [&](const json& body, int status) {
+    return check("POST", missions, missions, status, body.dump(), kJson).body;
+  };
+  EXPECT_THAT(refused({{"document", tiny}}, 400), HasSubstr("must be a mission"));
+  EXPECT_THAT(refused({{"document", mission_of(82)}}, 400), HasSubstr("item 1: command 82"));
+  EXPECT_THAT(refused({{"document", mission_of(16)}, {"limits", {{"max_bank_deg", 99}}}}, 400),
+              HasSubstr("limits.max_bank_deg"));
+  refused({{"document", mission_of(16)}, {"samples", 7}}, 400);
+  check("POST", missions, missions, 415, "{}");
+
   const Answer started = check("POST", runs, runs, 201, TestServer::body_of("tiny"), kJson);
   const std::string id = started.json().at("id");
   EXPECT_EQ(started.headers.at("location"), runs + "/" + id);
@@ -190,6 +306,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   EXPECT_EQ(check("GET", one, run, 200).json().at("status"), "completed");
   check("GET", one + "/metrics", run + "/metrics", 200);
   check("GET", one + "/manifest", run + "/manifest", 200);
+  EXPECT_EQ(check("GET", one + "/scenario", run + "/scenario", 200).json().at("name"), "tiny");
   const json statuses =
       check("GET", one + "/estimators", run + "/estimators", 200).json().at("estimators");
   EXPECT_EQ(statuses.at("perfect").at("state"), "TRACKING");
@@ -229,7 +346,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("POST", one + "/cancel", runs + "/none/cancel", 404);
   check("DELETE", one, run, 204);
   check("DELETE", one, run, 404);
-  for (const char* rest : {"", "/metrics", "/manifest", "/estimators"}) {
+  for (const char* rest : {"", "/metrics", "/manifest", "/scenario", "/estimators"}) {
     check("GET", one + rest, run + rest, 404);
   }
 
@@ -351,6 +468,29 @@ TEST_F(RestApiTest, RefusesCommandsThatNoScenarioFileHas) {
   const json scaled = {{"estimators.0.parameters.scale", 2}, {"duration_s", 0.5}};
   const Answer plain = post({{"scenario", "tiny"}, {"overrides", scaled}}, 201);
   server_.wait_for_end(plain.json().at("id"));
+}
+
+TEST_F(RestApiTest, FliesADocumentAndNamesWhatIsAtFaultInIt) {
+  const auto post = [&](const json& body, int status) {
+    return check("POST", "/api/v1/runs", "/api/v1/runs", status, body.dump(), kJson);
+  };
+  json document = ask(server_.port(), "GET", "/api/v1/scenarios/tiny").json();
+  document["duration_s"] = 0.5;
+  const std::string id = post({{"document", document}}, 201).json().at("id");
+  server_.wait_for_end(id);
+  EXPECT_EQ(ask(server_.port(), "GET", "/api/v1/runs/" + id).json().at("frames"), 16);
+  EXPECT_THAT(post({{"document", document}, {"scenario", "tiny"}}, 400).body,
+              HasSubstr("must not be given with document"));
+  post({{"document", 7}}, 400);
+  document["seed"] = -1;
+  EXPECT_THAT(post({{"document", document}}, 400).body, HasSubstr("\"field\":\"seed\""));
+  document["seed"] = 1;
+  document["estimators"] = {{{"name", "e"}, {"type", "process"}, {"command", {"/bin/true"}}}};
+  EXPECT_THAT(post({{"document", document}}, 403).body, HasSubstr("estimators.0.command"));
+  check("PUT", "/api/v1/scenarios/{name}", "/api/v1/scenarios/evil", 403, document.dump(), kJson);
+  document.erase("estimators");
+  document["world"] = {{"manifest", "/etc/passwd"}};
+  EXPECT_THAT(post({{"document", document}}, 400).body, HasSubstr("data folders"));
 }
 
 /// Files of this machine that a client names: inside of the data folders, and everywhere else.

@@ -61,6 +61,8 @@ describe('worlds on the map', () => {
       title: '',
       description: '',
       error,
+      flight: 'course',
+      saved: false,
     });
     store.state.scenarios = [entry('a', null), entry('b', 'broken'), entry('c', null)];
     store.state.logPage.open = true;

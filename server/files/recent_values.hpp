@@ -28,6 +28,7 @@ class RecentValues {
   }
   void keep(const std::string& key, std::shared_ptr<const Value> value) {
     const std::lock_guard lock(mutex_);
+    entries_.remove_if([&](const auto& entry) { return entry.first == key; });
     entries_.emplace_front(key, std::move(value));
     if (entries_.size() > capacity_) entries_.pop_back();
   }

@@ -1,4 +1,4 @@
-#include "server/logs/data_files.hpp"
+#include "server/files/data_files.hpp"
 
 #include <set>
 #include <string_view>
@@ -22,7 +22,7 @@ fs::path plain_folder(const fs::path& folder) {
 }
 
 /// The folders with labels that are unique: names of folders, numbered where they are equal.
-std::vector<Labelled> labelled(const LogFolders& folders) {
+std::vector<Labelled> labelled(const ServedFolders& folders) {
   std::vector<Labelled> result;
   std::set<std::string> labels{kUploadsLabel};
   std::set<fs::path> known;
@@ -83,7 +83,7 @@ bool is_clean(std::string_view name) {
 
 }  // namespace
 
-bool visit_data_files(const LogFolders& folders,
+bool visit_data_files(const ServedFolders& folders,
                       const std::function<bool(const std::string& name)>& candidate,
                       const std::function<bool(const DataFile&)>& take) {
   std::size_t visited = 0;
@@ -98,7 +98,7 @@ bool visit_data_files(const LogFolders& folders,
       const fs::path& file = entry->path();
       std::error_code ignored;
       if (entry->is_directory(ignored)) {
-        if (is_hidden(file) || entry.depth() >= kMaxLogDepth) entry.disable_recursion_pending();
+        if (is_hidden(file) || entry.depth() >= kMaxDataDepth) entry.disable_recursion_pending();
         continue;
       }
       if (!candidate(file.filename().string()) || is_hidden(file) || !is_clean(file.string())) {
@@ -117,7 +117,7 @@ bool visit_data_files(const LogFolders& folders,
 }
 
 std::optional<fs::path> find_data_file(
-    const LogFolders& folders,
+    const ServedFolders& folders,
     const std::string& name,
     const std::function<bool(const std::string& name)>& candidate) {
   const std::size_t slash = name.find('/');

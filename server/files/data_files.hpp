@@ -12,8 +12,8 @@
 
 namespace overfly::server {
 
-/// Where logs and trajectories lie.
-struct LogFolders {
+/// Where files lie that clients may read.
+struct ServedFolders {
   std::filesystem::path uploads;               ///< empty = there are no uploads
   std::vector<std::filesystem::path> folders;  ///< data folders
   SourcePolicy sources;                        ///< which files may be read
@@ -30,20 +30,20 @@ struct DataFile {
 inline constexpr const char* kUploadsLabel = "uploads";
 /// Limits of a list: entries of folders that are looked at, and depth of folders.
 inline constexpr std::size_t kMaxVisitedFiles = 20'000;
-inline constexpr int kMaxLogDepth = 6;
+inline constexpr int kMaxDataDepth = 6;
 
 /// Passes the regular files of the folders to `take`, until that returns false. Hidden files and
 /// folders, links to folders, and names that JSON cannot repeat are left out.
 /// @param candidate  whether a file with this name is wanted
 /// @return false if there are more than kMaxVisitedFiles entries, or if `take` returned false
-bool visit_data_files(const LogFolders& folders,
+bool visit_data_files(const ServedFolders& folders,
                       const std::function<bool(const std::string& name)>& candidate,
                       const std::function<bool(const DataFile&)>& take);
 
 /// The file of a name. Empty for every name that is not the one of a regular file inside the
 /// folders, whether the file exists or not.
 [[nodiscard]] std::optional<std::filesystem::path> find_data_file(
-    const LogFolders& folders,
+    const ServedFolders& folders,
     const std::string& name,
     const std::function<bool(const std::string& name)>& candidate);
 

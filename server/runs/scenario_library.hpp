@@ -1,0 +1,92 @@
+// The scenarios of a server: those of its owner, and those that clients saved.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/outside/source_policy.hpp"
+#include "core/result.hpp"
+#include "server/scenario/document/scenario_list.hpp"
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::server {
+
+/// Limits of saved scenarios: their number, and the bytes of each.
+inline constexpr std::size_t kMaxSavedScenarios = 500;
+inline constexpr std::size_t kMaxSavedScenarioBytes = std::size_t{1} << 20U;
+
+/// Why a scenario is not saved or deleted, in addition to the error.
+enum class SaveRefusal {
+  kNone,
+  kOff,    ///< the server keeps none
+  kOwned,  ///< the owner's scenario has this name
+  kFull,   ///< kMaxSavedScenarios are saved
+};
+
+/// Thread-safe. A name belongs to the owner's scenario if there is one.
+class ScenarioLibrary {
+ public:
+  struct Options {
+    std::filesystem::path folder;  ///< of the owner's scenarios
+    std::filesystem::path saved;   ///< of saved ones, created with the first; empty = none are kept
+    bool allow_commands = false;   ///< clients may name programs to start and network addresses
+    std::function<SourcePolicy()> sources;  ///< what scenarios may name now
+  };
+  explicit ScenarioLibrary(Options options) : options_(std::move(options)) {}
+
+  /// Whether clients may save scenarios.
+  [[nodiscard]] bool saves() const { return !options_.saved.empty(); }
+  /// The owner's scenarios by name, then the saved ones by name.
+  [[nodiscard]] std::vector<ScenarioEntry> list() const;
+  /// The resolved document. Errors: kNotFound; as load_scenario.
+  [[nodiscard]] Result<nlohmann::json> document(const std::string& name) const;
+  /// A scenario that can be flown. Errors: kNotFound; as load_scenario, check_scenario.
+  [[nodiscard]] Result<Scenario> load(const std::string& name,
+                                      const std::vector<Override>& overrides = {}) const;
+  /// The same of a client's document. Relative files are relative to the owner's folder.
+  /// Errors: as resolve_scenario, check_scenario.
+  [[nodiscard]] Result<Scenario> read(const nlohmann::json& document) const;
+
+  /// Checks whether a client may fly a scenario with overrides: they must not change commands,
+  /// sockets and addresses of the scenario's file; a saved scenario may contain only those of the
+  /// owner's files.
+  /// Errors: kInvalidArgument naming the field. Other errors are left to load().
+  [[nodiscard]] Status check_reach(const std::string& name,
+                                   const std::vector<Override>& overrides) const;
+  /// Checks whether a client may fly or save a document: as for saved scenarios.
+  [[nodiscard]] Status check_reach(const nlohmann::json& document) const;
+
+  /// Saves a document, resolved and under this name.
+  /// @param replace  a saved scenario of this name is replaced
+  /// @return true if there was none of this name
+  /// Errors: kInvalidArgument for the name (letters, digits, `_`, `-`, at most 64), and as read();
+  /// kConflict if the name exists, or with `refusal`; kIo.
+  [[nodiscard]] Result<bool> save(const std::string& name,
+                                  const nlohmann::json& document,
+                                  bool replace,
+                                  SaveRefusal& refusal);
+  /// Errors: kNotFound; kConflict with `refusal`; kIo.
+  [[nodiscard]] Status remove(const std::string& name, SaveRefusal& refusal);
+
+ private:
+  struct Found {
+    std::filesystem::path file;
+    bool saved = false;
+  };
+  [[nodiscard]] Result<Found> find(const std::string& name) const;
+  [[nodiscard]] Status check_owned(const Scenario& scenario) const;
+  [[nodiscard]] Status check_name(const std::string& name,
+                                  bool replace,
+                                  SaveRefusal& refusal) const;
+
+  const Options options_;
+  std::mutex saving_;
+};
+
+}  // namespace overfly::server
