@@ -121,7 +121,7 @@ describe('moving pictures', { skip, timeout: 600_000 }, () => {
       for (let y = 8; y < canvas.height; y += 16) {
         for (let x = 8; x < canvas.width; x += 16) levels.push(data[4 * (y * canvas.width + x)]);
       }
-      const rate = panel.closest('.dv-groupview').querySelector('[data-role=rate]');
+      const rate = panel.querySelector('[data-role=rate]');
       return { frame: Number(panel.dataset.frame), levels, rate: rate.textContent, hint: rate.title };
     });
 
@@ -225,6 +225,10 @@ describe('moving pictures', { skip, timeout: 600_000 }, () => {
     const ofScene = () => heard.pictures.filter(({ name }) => name === 'scene');
     await toggle(true);
     await until(() => ofScene().some(({ encoding }) => encoding === kVp8), 'video of the scene');
+    // The rate takes no room from the tools.
+    const tools = dashboard.page.locator('.dv-groupview:has([data-panel=scene]) .panel-tools');
+    const widths = await tools.evaluate((list) => [list.scrollWidth, list.clientWidth]);
+    assert.ok(widths[0] <= widths[1], `tools of ${widths[0]} px in ${widths[1]} px`);
     await dashboard.screenshot('video_playing');
     await toggle(false);
     await dashboard.untilSameInstant(['camera', 'scene']);
