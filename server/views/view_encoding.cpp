@@ -96,7 +96,7 @@ Result<Picture> PictureEncoder::encode_file(const std::filesystem::path& file,
   auto bytes = read_file_bytes(file, kMaxBytes);
   if (!bytes) return bytes.error();
   const auto size = jpeg_size(*bytes);
-  if (size && size->width_px <= request.max_width_px) {
+  if (size && size->width_px <= request.max_width_px && !request.sparing) {
     Picture picture;
     picture.frame = frame;
     picture.t_ns = t_ns;

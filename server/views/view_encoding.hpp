@@ -34,11 +34,13 @@ class PictureEncoder {
                                        const ColourScale& scale,
                                        const PinholeCamera& camera,
                                        const PictureRequest& request);
-  /// A recorded JPEG; unchanged if it fits.
+  /// A recorded JPEG; unchanged if it fits, unless bytes are to be saved.
   [[nodiscard]] Result<Picture> encode_file(const std::filesystem::path& file,
                                             std::int64_t frame,
                                             std::int64_t t_ns,
                                             const PictureRequest& request);
+  /// Frees what is kept for a viewer that has gone.
+  void forget(std::uint64_t viewer) { video_.forget(viewer); }
 
  private:
   struct Kept {

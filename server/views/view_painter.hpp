@@ -37,6 +37,8 @@ class ViewPainter {
   [[nodiscard]] FramePainter::Probed probe(const PixelRequest& request) {
     return frames_.probe(request);
   }
+  /// Frees what is kept for a viewer that has gone.
+  void forget(std::uint64_t viewer) { encoder_.forget(viewer); }
 
  private:
   [[nodiscard]] Painted paint_of(const PictureRequest& request,

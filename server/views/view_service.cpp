@@ -52,6 +52,23 @@ class AnsweredTask final : public ViewTask {
   Done done_;
 };
 
+/// The stream of the task below, which no picture has.
+constexpr int kNoStream = -1;
+
+/// Frees what the painter keeps for a client that has gone.
+class FarewellTask final : public ViewTask {
+ public:
+  explicit FarewellTask(std::uint64_t client) : client_(client) {}
+  bool run(ViewPainter& painter) override {
+    painter.forget(client_);
+    return true;
+  }
+  void refuse(const Error& /*reason*/) override {}
+
+ private:
+  std::uint64_t client_;
+};
+
 Error outdated() { return {ErrorCode::kCancelled, "a newer picture was requested"}; }
 
 }  // namespace
@@ -211,8 +228,11 @@ void ViewService::probe(std::uint64_t client,
 }
 
 void ViewService::forget(std::uint64_t client) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->queue.forget(client);
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->queue.forget(client);
+  }
+  impl_->push({client, kNoStream, std::make_unique<FarewellTask>(client)});
 }
 
 }  // namespace overfly::server

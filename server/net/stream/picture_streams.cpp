@@ -243,7 +243,7 @@ void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const 
   stream->reduced = false;
   if (!stream->moving) return;
   const Reduction reduction = reduction_at(link_.reduction());
-  stream->reduced = link_.reduction() > 0;
+  stream->reduced = request->sparing = link_.reduction() > 0;
   request->quality = std::max(std::min(request->quality, kLeastQuality),
                               request->quality - reduction.quality_less);
   request->max_width_px >>= reduction.halvings;

@@ -10,13 +10,17 @@ namespace {
 /// An encoder that was not used for so long may be given to another stream.
 constexpr std::int64_t kIdleNs = 2'000'000'000;
 
-std::int64_t now() {
+std::int64_t steady_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
 }  // namespace
+
+void VideoEncoders::forget(std::uint64_t viewer) {
+  std::erase_if(streams_, [&](const Stream& stream) { return stream.viewer == viewer; });
+}
 
 bool VideoEncoders::make_room(std::int64_t now_ns) {
   if (streams_.size() < kMost) return true;
@@ -28,7 +32,10 @@ bool VideoEncoders::make_room(std::int64_t now_ns) {
 Result<std::optional<LivePacket>> VideoEncoders::encode(const VideoChain& chain,
                                                         const Image& image,
                                                         int quality) {
-  const std::int64_t now_ns = now();
+  if (std::int64_t{image.width_px} * image.height_px > kMostPixels) {
+    return std::optional<LivePacket>();
+  }
+  const std::int64_t now_ns = steady_now_ns();
   auto found = std::find_if(streams_.begin(), streams_.end(), [&](const Stream& other) {
     return other.viewer == chain.viewer && other.stream == chain.stream;
   });

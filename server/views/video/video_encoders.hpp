@@ -15,16 +15,21 @@ namespace overfly::server {
 /// One for each stream; each holds the picture that its client has. Used on one thread.
 class VideoEncoders {
  public:
-  /// Each needs about ten times the bytes of a picture.
   static constexpr std::size_t kMost = 6;
+  /// Larger pictures take too long, and their encoders too much memory: about ten times the bytes
+  /// of a picture.
+  static constexpr std::int64_t kMostPixels = std::int64_t{1920} * 1440;
 
   /// The picture as the next one of the chain: a key picture if the chain asks for one, if the
   /// client does not have the encoder's last picture, or if the size has changed. Empty if all
-  /// encoders are in use.
+  /// encoders are in use, and beyond kMostPixels.
   /// Errors: as LiveEncoder.
   [[nodiscard]] Result<std::optional<LivePacket>> encode(const VideoChain& chain,
                                                          const Image& image,
                                                          int quality);
+  /// Frees the encoders of a viewer that has gone.
+  void forget(std::uint64_t viewer);
+  [[nodiscard]] std::size_t size() const { return streams_.size(); }
 
  private:
   struct Stream {

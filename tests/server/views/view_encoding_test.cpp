@@ -101,6 +101,12 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
   const auto half = encoder.encode_file(file, 3, 300, request_of(75, 40));
   ASSERT_TRUE(half);
   EXPECT_EQ(half->width_px, 32);
+  PictureRequest sparing = request_of(20, 64);
+  sparing.sparing = true;
+  const auto again = encoder.encode_file(file, 3, 300, sparing);
+  ASSERT_TRUE(again);
+  EXPECT_LT(again->bytes->size(), jpeg->size()) << "the link is slow: encoded anew";
+  EXPECT_EQ(again->width_px, 64);
   EXPECT_EQ(
       encoder.encode_file(folder.path() / "none.jpg", 3, 300, request_of(75, 64)).error().code,
       ErrorCode::kNotFound);

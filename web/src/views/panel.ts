@@ -25,9 +25,10 @@ export function makePanel(name: string, title: string): Panel {
   const rate = h('span', { class: 'rate-badge', 'data-role': 'rate' });
   const tools = h('div', { class: 'panel-tools' });
   const empty = h('div', { class: 'panel-empty', hidden: true });
-  const body = h('div', { class: 'panel-body' }, empty);
+  // Over the picture: in the header it would come and go among the tools.
+  const body = h('div', { class: 'panel-body' }, empty, rate);
   const root = h('section', { class: 'panel', 'data-panel': name, 'aria-label': title });
-  root.append(h('header', { class: 'panel-header' }, h('h2', {}, title), tools, rate, badge), body);
+  root.append(h('header', { class: 'panel-header' }, h('h2', {}, title), tools, badge), body);
   return {
     root,
     tools,

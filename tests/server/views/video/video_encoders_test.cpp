@@ -43,6 +43,29 @@ TEST(VideoEncoders, AreLimited) {
   ASSERT_TRUE(more);
   EXPECT_FALSE(*more);
   EXPECT_FALSE(is_key(encoders, {1, 0, 1, false}, image)) << "the others go on";
+  encoders.forget(1);
+  EXPECT_EQ(encoders.size(), 0U) << "a viewer that has gone takes no memory";
+  EXPECT_TRUE(is_key(encoders, {1, 99, 0, false}, image));
+}
+
+TEST(VideoEncoders, TakePicturesOfALimitedSize) {
+  VideoEncoders encoders;
+  const Image largest(1920, 1440, 1);
+  EXPECT_TRUE(is_key(encoders, {1, 1, 0, false}, largest));
+  const auto larger = encoders.encode({1, 2, 0, false}, Image(1921, 1440, 1), 75);
+  ASSERT_TRUE(larger);
+  EXPECT_FALSE(*larger);
+  EXPECT_EQ(encoders.size(), 1U);
+}
+
+TEST(VideoEncoders, ForgetOneViewerOnly) {
+  const Image image = overfly::testing::textured_image(64, 48, 1);
+  VideoEncoders encoders;
+  EXPECT_TRUE(is_key(encoders, {1, 1, 0, false}, image));
+  EXPECT_TRUE(is_key(encoders, {2, 1, 0, false}, image));
+  encoders.forget(1);
+  EXPECT_FALSE(is_key(encoders, {2, 1, 1, false}, image));
+  EXPECT_TRUE(is_key(encoders, {1, 1, 1, false}, image));
 }
 
 }  // namespace

@@ -1,0 +1,224 @@
+// The pictures of one client: which it asks for as video, and how they fit to its link.
+#include "server/net/stream/picture_streams.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "server/net/stream/picture_codec.hpp"
+#include "tests/server/net/fake_port.hpp"
+
+namespace overfly::net {
+namespace {
+
+using server::PictureCoding;
+using testing::FakePort;
+
+constexpr std::int64_t kPeriodNs = 40'000'000;
+
+class PictureStreamsTest : public ::testing::Test {
+ protected:
+  PictureStreamsTest() : timeline_(server::RunInfo{}, {}) {}
+
+  void subscribe(bool video, bool acknowledges) {
+    StreamRequest camera{"r", "camera"};
+    camera.video = video;
+    streams_.subscribe({{camera}, acknowledges});
+  }
+  /// Moves the clock by a frame and gives what the client asks for.
+  std::optional<server::PictureRequest> next(bool playing) {
+    now_ns_ += kPeriodNs;
+    if (playing) ++frame_;
+    port_.drawn.clear();
+    streams_.pump({{&timeline_, "r", frame_, frame_ * kPeriodNs}}, playing, &port_, now_ns_);
+    if (port_.drawn.empty()) return std::nullopt;
+    return port_.drawn.back().second;
+  }
+  /// Draws and sends what was asked for. @return its header
+  PictureHeader send(PictureCoding coding = PictureCoding::kJpeg, bool key = true) {
+    const PictureTicket ticket = port_.drawn.back().first;
+    server::Picture picture;
+    picture.frame = frame_;
+    picture.t_ns = frame_ * kPeriodNs;
+    picture.width_px = 64;
+    picture.height_px = 48;
+    picture.coding = coding;
+    picture.key = key;
+    picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(3, std::uint8_t{1});
+    streams_.ready(ticket, picture, &port_);
+    streams_.sent(ticket);
+    const auto header = decode_picture_header(port_.binaries.back());
+    return header.value_or(PictureHeader{});
+  }
+  /// Plays through one picture that the client shows.
+  PictureHeader play_one(PictureCoding coding) {
+    EXPECT_TRUE(next(true));
+    const PictureHeader header = send(coding);
+    streams_.shown({{{header.stream_id, header.sequence}}});
+    return header;
+  }
+  /// Plays to a client that takes a second for each picture, until pictures are reduced.
+  void play_slowly(int reduction) {
+    for (int i = 0; i < 400 && streams_.pictures_json()["reduction"] != reduction; ++i) {
+      if (next(true)) send();
+      if (i % 25 == 0) show_all();
+    }
+    ASSERT_EQ(streams_.pictures_json()["reduction"], reduction);
+    show_all();
+  }
+  void show_all() {
+    if (port_.binaries.empty()) return;
+    const auto header = decode_picture_header(port_.binaries.back());
+    streams_.shown({{{header->stream_id, header->sequence}}});
+  }
+
+  server::RunTimeline timeline_;
+  FakePort port_;
+  PictureStreams streams_;
+  std::int64_t frame_ = 0;
+  std::int64_t now_ns_ = 1'000'000'000;
+};
+
+TEST_F(PictureStreamsTest, AsksForVideoOnceAPictureIsThereAndMoves) {
+  subscribe(true, true);
+  ASSERT_FALSE(next(false)->video) << "at rest";
+  send();
+  show_all();
+  const auto first = next(true);
+  ASSERT_TRUE(first && first->video);
+  EXPECT_EQ(first->video->pictures, 0U);
+  const PictureHeader header = send(PictureCoding::kVp8, true);
+  EXPECT_EQ(header.encoding, PictureEncoding::kVp8);
+  EXPECT_TRUE(header.key);
+  show_all();
+  const auto second = next(true);
+  ASSERT_TRUE(second && second->video);
+  EXPECT_FALSE(second->video->key);
+  EXPECT_EQ(second->video->pictures, 1U);
+  EXPECT_FALSE(send(PictureCoding::kVp8, false).key);
+}
+
+TEST_F(PictureStreamsTest, SendsJpegToAClientThatDoesNotAskForVideo) {
+  subscribe(false, true);
+  for (int i = 0; i < 5; ++i) {
+    const auto request = next(true);
+    ASSERT_TRUE(request);
+    EXPECT_FALSE(request->video);
+    EXPECT_EQ(send().encoding, PictureEncoding::kJpegColour);
+    show_all();
+  }
+}
+
+TEST_F(PictureStreamsTest, ShowsASeekAsJpegAndGoesOnWithAKeyPicture) {
+  subscribe(true, true);
+  for (int i = 0; i < 3; ++i) play_one(PictureCoding::kVp8);
+  streams_.show_again();
+  EXPECT_FALSE(next(true)->video);
+  send();
+  show_all();
+  const auto request = next(true);
+  ASSERT_TRUE(request && request->video);
+  EXPECT_TRUE(request->video->key);
+}
+
+TEST_F(PictureStreamsTest, SendsTheLastPictureAgainInFullWhenItComesToRest) {
+  subscribe(true, true);
+  for (int i = 0; i < 3; ++i) play_one(PictureCoding::kVp8);
+  const auto request = next(false);
+  ASSERT_TRUE(request);
+  EXPECT_FALSE(request->video);
+  EXPECT_EQ(send().encoding, PictureEncoding::kJpegColour);
+  show_all();
+  EXPECT_FALSE(next(false)) << "once";
+}
+
+TEST_F(PictureStreamsTest, BeginsAnewWhenTheClientLostAPicture) {
+  subscribe(true, true);
+  std::uint32_t id = 0;
+  for (int i = 0; i < 3; ++i) id = play_one(PictureCoding::kVp8).stream_id;
+  ASSERT_FALSE(next(true)->video->key);
+  send(PictureCoding::kVp8, false);
+  show_all();
+  ASSERT_TRUE(streams_.restart_video({id}).ok());
+  EXPECT_TRUE(next(true)->video->key);
+  const Status unknown = streams_.restart_video({99});
+  EXPECT_EQ(unknown.error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(unknown.error().message, "key.id = 99: is no subscribed stream");
+}
+
+TEST_F(PictureStreamsTest, LeavesTheProcessorToARealTimeFlight) {
+  subscribe(true, true);
+  for (int i = 0; i < 3; ++i) play_one(PictureCoding::kVp8);
+  streams_.set_limit_hz(31.0);
+  const auto request = next(true);
+  ASSERT_TRUE(request);
+  EXPECT_FALSE(request->video) << "it takes several times as long";
+}
+
+TEST_F(PictureStreamsTest, HasFewPicturesOnTheWayToAClientThatAcknowledges) {
+  subscribe(false, true);
+  for (int i = 0; i < PictureStreams::kWindow; ++i) {
+    ASSERT_TRUE(next(true));
+    send();
+  }
+  EXPECT_FALSE(next(true));
+  show_all();
+  EXPECT_TRUE(next(true));
+}
+
+TEST_F(PictureStreamsTest, DoesNotWaitForEverForAClientThatForgetsToAcknowledge) {
+  subscribe(false, true);
+  for (int i = 0; i < PictureStreams::kWindow; ++i) {
+    ASSERT_TRUE(next(true));
+    send();
+  }
+  EXPECT_FALSE(next(true));
+  now_ns_ += 6'000'000'000;
+  EXPECT_TRUE(next(true));
+}
+
+TEST_F(PictureStreamsTest, IgnoresPicturesThatWereNeverSent) {
+  subscribe(false, true);
+  ASSERT_TRUE(next(true));
+  const PictureHeader header = send();
+  streams_.shown({{{header.stream_id, 4'000'000'000U}, {77, 0}}});
+  ASSERT_TRUE(next(true));
+  send();
+  EXPECT_FALSE(next(true)) << "two are on the way";
+}
+
+TEST_F(PictureStreamsTest, SendsAllToAClientThatDoesNotAcknowledge) {
+  subscribe(false, false);
+  for (int i = 0; i < 100; ++i) {
+    const auto request = next(true);
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->quality, 75);
+    send();
+  }
+  EXPECT_EQ(streams_.pictures_json()["reduction"], 0);
+}
+
+TEST_F(PictureStreamsTest, ReducesMovingPicturesForASlowClientAndSharpensThemAtRest) {
+  subscribe(false, true);
+  play_slowly(4);
+  EXPECT_TRUE(streams_.reduction_changed());
+  EXPECT_FALSE(streams_.reduction_changed());
+  now_ns_ += kPeriodNs;
+  const auto reduced = next(true);
+  ASSERT_TRUE(reduced);
+  EXPECT_EQ(reduced->quality, 35);
+  EXPECT_EQ(reduced->max_width_px, 320);
+  EXPECT_TRUE(reduced->sparing);
+  send();
+  show_all();
+  const auto full = next(false);
+  ASSERT_TRUE(full);
+  EXPECT_EQ(full->quality, 75);
+  EXPECT_EQ(full->max_width_px, 1280);
+  EXPECT_FALSE(full->sparing);
+}
+
+}  // namespace
+}  // namespace overfly::net
