@@ -56,9 +56,9 @@ class RecordedBoards final : public BoardImages {
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
     if (ended()) return std::optional<BoardImage>();
     const std::size_t index = chosen_[next_++];
-    Result<Image> image = source_->read(index);
-    return std::optional(
-        BoardImage{image_title("image", static_cast<std::int64_t>(index) + 1), std::move(image)});
+    BoardImage read{image_title("image", static_cast<std::int64_t>(index) + 1),
+                    source_->read(index)};
+    return std::make_optional(std::move(read));
   }
   [[nodiscard]] bool ended() const override { return next_ == chosen_.size(); }
   [[nodiscard]] std::optional<std::size_t> total() const override { return chosen_.size(); }

@@ -96,31 +96,31 @@ Result<server::PixelRequest> pixel_request(const RouteCall& call,
 }
 
 nlohmann::json pixel_json(const server::PixelValue& value) {
-  nlohmann::json json = {{"frame", value.frame},
-                         {"t_ns", value.t_ns},
-                         {"camera", value.camera},
-                         {"width_px", value.width_px},
-                         {"height_px", value.height_px},
-                         {"grey", value.grey},
-                         {"rgb", nullptr},
-                         {"difference", nullptr},
-                         {"ground", nullptr},
-                         {"depth_m", nullptr},
-                         {"range_m", nullptr}};
-  if (value.rgb) json["rgb"] = *value.rgb;
-  if (value.difference) json["difference"] = *value.difference;
+  nlohmann::json shown = {{"frame", value.frame},
+                          {"t_ns", value.t_ns},
+                          {"camera", value.camera},
+                          {"width_px", value.width_px},
+                          {"height_px", value.height_px},
+                          {"grey", value.grey},
+                          {"rgb", nullptr},
+                          {"difference", nullptr},
+                          {"ground", nullptr},
+                          {"depth_m", nullptr},
+                          {"range_m", nullptr}};
+  if (value.rgb) shown["rgb"] = *value.rgb;
+  if (value.difference) shown["difference"] = *value.difference;
   if (value.ground && value.ground_world_m) {
     const Eigen::Vector3d& place = *value.ground_world_m;
-    json["ground"] = {{"lat_deg", deg_from_rad(value.ground->lat_rad)},
-                      {"lon_deg", deg_from_rad(value.ground->lon_rad)},
-                      {"alt_ellipsoid_m", value.ground->alt_ellipsoid_m},
-                      {"x_m", place.x()},
-                      {"y_m", place.y()},
-                      {"z_m", place.z()}};
-    json["depth_m"] = value.depth_m;
-    json["range_m"] = value.range_m;
+    shown["ground"] = {{"lat_deg", deg_from_rad(value.ground->lat_rad)},
+                       {"lon_deg", deg_from_rad(value.ground->lon_rad)},
+                       {"alt_ellipsoid_m", value.ground->alt_ellipsoid_m},
+                       {"x_m", place.x()},
+                       {"y_m", place.y()},
+                       {"z_m", place.z()}};
+    shown["depth_m"] = value.depth_m;
+    shown["range_m"] = value.range_m;
   }
-  return json;
+  return shown;
 }
 
 /// What a route of a frame needs to ask for pictures.
