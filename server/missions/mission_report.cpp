@@ -183,19 +183,21 @@ class Reporter {
   }
   [[nodiscard]] std::optional<StartLeg> start_leg() const {
     std::optional<StartLeg> best;
-    std::optional<std::size_t> first;
+    std::size_t first = 0;
+    bool inside = false;
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const PreviewState& state = states_[i];
       const bool level =
           std::abs(deg_from_rad(state.attitude.roll_rad)) <= kLevelBankDeg &&
           std::abs(state.v_world_m_s.z()) <= kLevelClimbMS &&
           (state.phase == FlightPhase::kEnRoute || state.phase == FlightPhase::kLoiter);
-      if (level && !first) first = i;
-      if (first && (!level || i + 1 == states_.size())) {
-        const StartLeg leg = leg_between(*first, level ? i : i - 1);
+      if (level && !inside) first = i;
+      inside = inside || level;
+      if (inside && (!level || i + 1 == states_.size())) {
+        const StartLeg leg = leg_between(first, level ? i : i - 1);
         if (leg.enough) return leg;
         if (!best || leg.to_s - leg.from_s > best->to_s - best->from_s) best = leg;
-        first.reset();
+        inside = false;
       }
     }
     return best;
@@ -268,6 +270,7 @@ void add_places(const autopilot::MissionSetup& setup,
     place.ground_ellipsoid_m =
         tiles.frame().geodetic_from_world({at.x(), at.y(), ground}).alt_ellipsoid_m;
     place.height_agl_m = up - ground;
+    place.height_above_home_m = up - setup.mission.home_world_m.z();
     place.reached_s = reporter.end_of_item(i);
     if (item.command == MissionCommand::kLoiter || item.command == MissionCommand::kReturn) {
       place.turn_radius_m =

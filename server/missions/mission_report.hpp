@@ -64,6 +64,7 @@ struct MissionPlace {
   Geodetic place;
   double ground_ellipsoid_m = 0.0;
   double height_agl_m = 0.0;
+  double height_above_home_m = 0.0;  ///< as heights above home are flown: in the world frame
   std::optional<double> reached_s;
   /// Of the turn at a waypoint or in a circle, by the formula of coordinated turns at the airspeed
   /// (and, in wind, the ground speed's largest value) and the turn's radius.

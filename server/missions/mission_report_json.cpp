@@ -85,6 +85,7 @@ Json places_json(const MissionReport& report) {
                       {"alt_ellipsoid_m", number(place.place.alt_ellipsoid_m, 0.01)},
                       {"ground_ellipsoid_m", number(place.ground_ellipsoid_m, 0.01)},
                       {"height_agl_m", number(place.height_agl_m, 0.01)},
+                      {"height_above_home_m", number(place.height_above_home_m, 0.01)},
                       {"reached_s", number(place.reached_s, 0.1)},
                       {"turn_radius_m", number(place.turn_radius_m, 0.1)},
                       {"turn_bank_deg", number(place.turn_bank_deg, 0.1)}});

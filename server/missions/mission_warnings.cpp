@@ -44,17 +44,16 @@ class SpanFinder {
 
   /// One warning for each stretch of samples beyond the limit.
   void add(const Criterion& criterion) {
-    std::optional<std::size_t> first;
+    std::size_t first = 0;
+    bool inside = false;
     std::size_t count = 0;
     const std::vector<MissionSample>& samples = report_.samples;
     for (std::size_t i = 0; i <= samples.size(); ++i) {
       const auto value = i < samples.size() ? criterion.value(samples[i]) : std::nullopt;
       const bool broken = value && is_broken(criterion, *value);
-      if (broken && !first) first = i;
-      if (!broken && first) {
-        if (count++ < kMostSpans) warn(criterion, *first, i - 1);
-        first.reset();
-      }
+      if (broken && !inside) first = i;
+      if (!broken && inside && count++ < kMostSpans) warn(criterion, first, i - 1);
+      inside = broken;
     }
   }
 

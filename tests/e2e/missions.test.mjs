@@ -75,6 +75,7 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
     await page.locator('[data-tool=circle]').click();
     await clickMap(0.5, 0.7);
     await page.keyboard.press('v');
+    await page.locator('[data-tool=select][aria-pressed=true]').waitFor();
     await untilItems(5);
     assert.deepEqual(await titles(), ['Take-off', 'Waypoint', 'Waypoint', 'Waypoint', 'Circle, turns']);
     await reported();
@@ -273,6 +274,27 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
     await page.locator('#mission-open option[value=round_the_farm]').waitFor({ state: 'detached' });
     assert.ok(!existsSync(path.join(folder, 'saved/round_the_farm.json')));
     await untilItems(5);
+  });
+
+  step('fits dark and small screens', async () => {
+    await page.emulateMedia({ colorScheme: 'dark' });
+    for (const [width, height] of [
+      [1280, 800],
+      [820, 1180],
+      [390, 844],
+    ]) {
+      await page.setViewportSize({ width, height });
+      await reported();
+      await dashboard.screenshot(`missions_${width}x${height}`);
+      const wide = await page.evaluate(() =>
+        [...document.querySelectorAll('.mission-page, .mission-page *:not(.leaflet-container *)')]
+          .filter((element) => element.getBoundingClientRect().right > innerWidth + 1)
+          .map((element) => element.className),
+      );
+      assert.deepEqual(wide, []);
+    }
+    await page.setViewportSize({ width: 1600, height: 900 });
+    await page.emulateMedia({ colorScheme: 'light' });
   });
 
   step('closes by Escape and logged no error in the page', async () => {

@@ -96,6 +96,14 @@ try {
   await page.locator('[data-role=last-view]').filter({ hasText: 'View 5' }).waitFor();
   await page.waitForTimeout(1000);
   await save('dashboard_calibration');
+  await page.getByLabel('Close').first().click();
+  await page.locator('[data-role=open-missions]').click();
+  await page.locator('[data-role=mission-map][data-world="builtin:1"]').waitFor();
+  await page.locator('#mission-open').selectOption('airfield_mission');
+  await page.locator('[data-role=profile-readout]').filter({ hasText: 'landing' }).waitFor();
+  await page.locator('[data-role=mission-items] .mission-item').nth(2).click();
+  await page.waitForTimeout(2000);
+  await save('dashboard_missions');
 } finally {
   await stage.close();
 }

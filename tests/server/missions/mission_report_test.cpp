@@ -114,6 +114,19 @@ TEST_F(MissionReportTest, PredictsTheBankOfTurns) {
   EXPECT_TRUE(made.places[0].reached_s.has_value());
 }
 
+TEST_F(MissionReportTest, StatesAHeightSoThatItCanBeCountedFromElsewhere) {
+  Json above_ground = item(16, 1500, 1400, 300);
+  above_ground["frame"] = 10;
+  const MissionReport made = report(scenario(Json::array({above_ground})));
+  ASSERT_EQ(made.places.size(), 1U);
+  EXPECT_NEAR(made.places[0].height_agl_m, 300.0, 1e-6);
+  const double above_home_m = made.places[0].height_above_home_m;
+  const MissionReport again = report(scenario(Json::array({item(16, 1500, 1400, above_home_m)})));
+  ASSERT_EQ(again.places.size(), 1U);
+  EXPECT_NEAR(again.places[0].height_agl_m, 300.0, 1e-3);
+  EXPECT_NEAR(again.places[0].height_above_home_m, above_home_m, 1e-4);  // items hold floats
+}
+
 TEST_F(MissionReportTest, WarnsOfWhatIsBeyondItsLimits) {
   Json circle = item(18, 0, 600, 120, 1);
   circle["params"][2] = 40.0;

@@ -176,6 +176,11 @@ export class RestClient {
     return (await this.call('POST', '/runs', { document }, headers)) as Run;
   }
 
+  /** The scenario that a run flies or flew. */
+  async runScenario(id: string): Promise<JsonObject> {
+    return (await this.call('GET', `/runs/${encodeURIComponent(id)}/scenario`)) as JsonObject;
+  }
+
   async cancelRun(id: string): Promise<void> {
     await this.call('POST', `/runs/${encodeURIComponent(id)}/cancel`);
   }

@@ -97,6 +97,7 @@ export interface MissionPlace extends LatLon {
   alt_ellipsoid_m: number;
   ground_ellipsoid_m: number;
   height_agl_m: number;
+  height_above_home_m: number;
   reached_s: number | null;
   turn_radius_m: number | null;
   turn_bank_deg: number | null;

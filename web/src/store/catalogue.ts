@@ -1,8 +1,9 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { fieldErrorsOf } from '../connection/rest_client';
+import type { Json, JsonObject, Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
-import { overridesOf } from './launch_form';
+import { overridesOf, withOverrides } from './launch_form';
 import type { Notices } from './notices';
 import { sectionErrors, sectionOverrides } from './scenario_schema';
 import type { Session } from './session';
@@ -71,6 +72,7 @@ export class Catalogue {
   async selectScenario(name: string): Promise<void> {
     const { state } = this.store;
     state.scenarioName = name;
+    state.repeatedRun = null;
     state.scenarioDocument = null;
     state.scenarioEdits = new Map();
     state.launchErrors = [];
@@ -83,18 +85,40 @@ export class Catalogue {
     }
     try {
       const document = await this.rest.scenario(name);
-      if (this.store.state.scenarioName === name) state.scenarioDocument = document;
+      const { repeatedRun, scenarioName } = this.store.state;
+      if (scenarioName === name && repeatedRun === null) state.scenarioDocument = document;
     } catch (error) {
       state.launchErrors = [{ field: '', message: textOf(error) }];
     }
     this.store.change('launch');
   }
 
+  /** Shows in the form what a run flew, to fly it again with changes. */
+  async repeat(run: Run): Promise<void> {
+    const { state } = this.store;
+    let document: JsonObject;
+    try {
+      document = await this.rest.runScenario(run.id);
+    } catch (error) {
+      this.notices.error(textOf(error));
+      return;
+    }
+    // Pages that need a scenario's name go on with the same one.
+    if (state.scenarios?.some(({ name }) => name === run.scenario) === true) {
+      state.scenarioName = run.scenario;
+    }
+    state.repeatedRun = run;
+    state.scenarioDocument = document;
+    state.scenarioEdits = new Map();
+    state.launchErrors = [];
+    this.store.change('launch');
+  }
+
   /** Starts a run with the form's values and watches it; invalid fields are shown in the form. */
   async launch(texts: ReadonlyMap<string, string>): Promise<void> {
     const { state } = this.store;
-    const { scenarioName, scenarioDocument } = state;
-    if (scenarioName === null || scenarioDocument === null || state.launching) return;
+    const { scenarioDocument } = state;
+    if (scenarioDocument === null || state.launching) return;
     const { overrides: fields, errors } = overridesOf(scenarioDocument, texts);
     const { scenarioEdits, scenarioSchema } = state;
     for (const [section, text] of scenarioEdits) {
@@ -106,7 +130,7 @@ export class Catalogue {
     state.launching = true;
     const overrides = { ...sectionOverrides(scenarioEdits), ...fields };
     try {
-      const run = await this.rest.startRun(scenarioName, overrides, this.newKey());
+      const run = await this.fly(scenarioDocument, overrides);
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
       this.session.selectRun(run.id);
     } catch (error) {
@@ -114,6 +138,13 @@ export class Catalogue {
     }
     state.launching = false;
     this.store.change('launch', 'lists');
+  }
+
+  private fly(document: JsonObject, overrides: Record<string, Json>): Promise<Run> {
+    const { repeatedRun, scenarioName } = this.store.state;
+    return repeatedRun === null
+      ? this.rest.startRun(scenarioName ?? '', overrides, this.newKey())
+      : this.rest.startDocument(withOverrides(document, overrides), this.newKey());
   }
 
   async cancel(id: string): Promise<void> {
@@ -139,7 +170,9 @@ export class Catalogue {
   async readRuns(): Promise<void> {
     const { state } = this.store;
     try {
+      const before = state.runs;
       state.runs = await this.rest.runs();
+      this.announceEnded(before ?? [], state.runs);
       state.listError = null;
       for (const watched of state.watched) {
         if (watched.run !== null) continue;
@@ -151,6 +184,19 @@ export class Catalogue {
       state.listError = textOf(error);
     }
     this.store.change('lists');
+  }
+
+  /** Says which runs ended; those that the viewer stopped need no word. */
+  private announceEnded(before: readonly Run[], now: readonly Run[]): void {
+    const active = new Set(before.filter(isActive).map(({ id }) => id));
+    for (const run of now) {
+      if (!active.has(run.id)) continue;
+      const name = run.title || run.scenario;
+      if (run.status === 'completed') this.notices.info(`${name}: the flight is complete.`);
+      if (run.status === 'failed') {
+        this.notices.error(`${name}: the flight failed. ${run.error ?? ''}`.trim());
+      }
+    }
   }
 
   private async poll(): Promise<void> {

@@ -28,6 +28,14 @@ export function formatTime(t_ns: number): string {
   return `${sign}${pad(minutes, 2)}:${pad(seconds, 2)}.${pad(ms % 1000, 3)}`;
 }
 
+/** A duration in its two largest units: "45 s", "3 min 20 s", "2 h 5 min". */
+export function formatDuration(duration_s: number): string {
+  const seconds = Math.max(0, Math.round(duration_s));
+  if (seconds < 60) return `${seconds} s`;
+  if (seconds < 3600) return `${Math.floor(seconds / 60)} min ${seconds % 60} s`;
+  return `${Math.floor(seconds / 3600)} h ${Math.floor((seconds % 3600) / 60)} min`;
+}
+
 /** Local date and time of an ISO 8601 instant, without seconds. */
 export function formatDate(utc: string): string {
   const date = new Date(utc);

@@ -19,6 +19,16 @@ export interface FieldSpec {
   hint: string;
 }
 
+/** Types of estimators that need nothing but their name. */
+export const kEstimatorChoices = [
+  { value: 'feature', label: 'Feature' },
+  { value: 'baseline_homography', label: 'Homography' },
+  { value: 'baseline_dead_reckoning', label: 'Dead reckoning' },
+  { value: 'baseline_hold', label: 'Hold' },
+  { value: 'perfect', label: 'Perfect' },
+  { value: 'drifting', label: 'Drifting' },
+] as const;
+
 const kCourse = 'flight.course';
 
 export const kFields: readonly FieldSpec[] = [
@@ -160,11 +170,7 @@ export const kFields: readonly FieldSpec[] = [
     unit: '',
     kind: 'estimators',
     hint: 'None = camera and truth only',
-    choices: [
-      { value: 'feature', label: 'Feature' },
-      { value: 'perfect', label: 'Perfect' },
-      { value: 'drifting', label: 'Drifting' },
-    ],
+    choices: kEstimatorChoices,
   },
 ];
 
@@ -218,6 +224,28 @@ export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, str
   return { overrides, errors };
 }
 
+/** A document with other values, as the server applies overrides. */
+export function withOverrides(document: JsonObject, overrides: Record<string, Json>): JsonObject {
+  const changed = structuredClone(document);
+  for (const [path, value] of Object.entries(overrides)) {
+    const parts = path.split('.');
+    const last = parts.pop() ?? '';
+    let place = changed;
+    for (const part of parts) {
+      const inner = place[part];
+      const next = isRecord(inner) ? inner : {};
+      place[part] = next;
+      place = next;
+    }
+    place[last] = value;
+  }
+  return changed;
+}
+
+function isRecord(value: Json | undefined): value is JsonObject {
+  return typeof value === 'object' && value !== null && !Array.isArray(value);
+}
+
 /**
  * The field to which an error belongs: the one with the same path, or with a path that contains it.
  */
@@ -229,10 +257,7 @@ export function fieldOfError(fields: readonly FieldSpec[], error: FieldError): F
 
 function estimatorsOf(value: Json | undefined): JsonObject[] {
   if (!Array.isArray(value)) return [];
-  return value.filter(
-    (entry): entry is JsonObject =>
-      typeof entry === 'object' && entry !== null && !Array.isArray(entry),
-  );
+  return value.filter(isRecord);
 }
 
 function nameOf(estimator: JsonObject): string {

@@ -49,6 +49,8 @@ export class State {
   listError: string | null = null;
   scenarioName: string | null = null;
   scenarioDocument: JsonObject | null = null;
+  /** The run whose scenario the launcher shows; null = that of `scenarioName`. */
+  repeatedRun: Run | null = null;
   scenarioSchema: JsonObject | null = null;
   /** Sections of the scenario edited as JSON: text by section name. */
   scenarioEdits = new Map<string, string>();

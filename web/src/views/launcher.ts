@@ -1,4 +1,6 @@
 // Selects a scenario, changes its main parameters, starts a run.
+import type { Run } from '../protocol/rest_types';
+import { formatDate } from '../store/format';
 import { fieldOfError, fieldsOf, fieldText } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
 import type { Topic } from '../store/state';
@@ -7,6 +9,8 @@ import { makePanel } from './panel';
 import type { Context, View } from './view';
 
 const kEditLabel = 'Edit JSON';
+/** Value of the option of a run that is flown again: no scenario's name. */
+const kRepeated = '';
 
 interface Field {
   spec: FieldSpec;
@@ -103,30 +107,37 @@ export class Launcher implements View {
   }
 
   private updatePicker(): void {
-    const { scenarios, scenarioName } = this.context.store.state;
-    rebuild(this.picker, JSON.stringify(scenarios), () =>
-      (scenarios ?? []).map(({ name, title, error }) =>
+    const { scenarios, scenarioName, repeatedRun } = this.context.store.state;
+    rebuild(this.picker, JSON.stringify([scenarios, repeatedRun?.id ?? null]), () => [
+      ...repeatedOption(repeatedRun),
+      ...(scenarios ?? []).map(({ name, title, error }) =>
         h(
           'option',
           { value: name, title: error ?? name },
           error === null ? title : `${title} (unavailable)`,
         ),
       ),
-    );
-    if (scenarioName !== null) this.picker.value = scenarioName;
+    ]);
+    if (repeatedRun !== null) this.picker.value = kRepeated;
+    else if (scenarioName !== null) this.picker.value = scenarioName;
     this.picker.disabled = scenarios === null || scenarios.length === 0;
     const entry = scenarios?.find(({ name }) => name === scenarioName);
     const empty =
       scenarios?.length === 0 ? 'The server has no scenarios.' : 'Reading the scenarios';
-    setText(this.description, entry?.description ?? empty);
-    this.description.title = entry?.description ?? '';
+    const description =
+      repeatedRun === null
+        ? entry?.description
+        : `All settings of the run of ${formatDate(repeatedRun.created_utc)}. Change what is to differ.`;
+    setText(this.description, description ?? empty);
+    this.description.title = description ?? '';
   }
 
   private buildFields(): void {
     const document = this.context.store.state.scenarioDocument;
     this.documentShown = document;
-    const name = this.context.store.state.scenarioName;
+    const { scenarioName: name, repeatedRun } = this.context.store.state;
     setAttribute(this.fieldArea, 'data-scenario', document === null ? null : name);
+    setAttribute(this.fieldArea, 'data-repeats', repeatedRun?.id ?? null);
     if (document === null) {
       this.fields = [];
     } else {
@@ -153,6 +164,11 @@ export class Launcher implements View {
     );
     this.errors.hidden = rest.length === 0;
   }
+}
+
+function repeatedOption(run: Run | null): HTMLElement[] {
+  if (run === null) return [];
+  return [h('option', { value: kRepeated }, `Again: ${run.title || run.scenario}`)];
 }
 
 function makeField(spec: FieldSpec, text: string): Field {

@@ -1,6 +1,6 @@
 // The server's runs, newest first.
 import { textureHint } from '../store/error_table';
-import { formatDate, formatNumber } from '../store/format';
+import { formatDate, formatDuration, formatNumber } from '../store/format';
 import { matching } from '../store/run_search';
 import type { Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
@@ -64,6 +64,7 @@ export class RunList implements View {
       formatDate(run.created_utc),
       length,
       run.estimators.join(', ') || 'no estimators',
+      progressText(run),
     ].filter((part) => part !== '');
     return h(
       'li',
@@ -92,6 +93,7 @@ export class RunList implements View {
           : null,
       ),
       chips(run),
+      this.repeatButton(run),
       this.compareButton(run),
       isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
     );
@@ -117,6 +119,25 @@ export class RunList implements View {
         },
       },
       icon('add'),
+    );
+  }
+
+  private repeatButton(run: Run): HTMLElement {
+    const { catalogue, layouts } = this.context;
+    const again = async () => {
+      await catalogue.repeat(run);
+      layouts.show('launcher');
+    };
+    return h(
+      'button',
+      {
+        class: 'icon-button',
+        title: 'Fly again with changes: its settings are shown in Launch',
+        'aria-label': `Fly again with changes: ${run.title}`,
+        'data-role': 'repeat',
+        onclick: () => void again(),
+      },
+      icon('repeat'),
     );
   }
 
@@ -158,6 +179,14 @@ export class RunList implements View {
       if (this.confirming === id) this.ask(null);
     }, kConfirm_ms);
   }
+}
+
+/** Place in the queue, or time left; '' if neither is known. */
+function progressText(run: Run): string {
+  if (run.queue_position !== null) {
+    return run.queue_position === 1 ? 'next' : `${run.queue_position - 1} before it`;
+  }
+  return run.left_s === null ? '' : `${formatDuration(run.left_s)} left`;
 }
 
 /** Status, and what is wrong with the run. */

@@ -98,7 +98,7 @@ export class ScenarioEditor implements View {
   }
 
   private drawSection(state: State, schema: JsonObject, document: JsonObject): void {
-    const key = `${String(state.scenarioName)}/${this.section}`;
+    const key = `${String(state.scenarioName)}/${state.repeatedRun?.id ?? ''}/${this.section}`;
     if (this.shown === key) return;
     this.shown = key;
     this.text.value = state.scenarioEdits.get(this.section) ?? sectionText(document, this.section);

@@ -20,7 +20,7 @@ const kScenario = {
 };
 
 /** A catalogue whose server answers by method and path. */
-function catalogue(answers: Record<string, () => [number, unknown]>) {
+function catalogue(answers: Record<string, (body: string) => [number, unknown]>) {
   const store = new Store();
   const timers = new FakeTimers();
   const later = (callback: () => void, delay_ms: number) => void timers.set(callback, delay_ms);
@@ -40,7 +40,7 @@ function catalogue(answers: Record<string, () => [number, unknown]>) {
   const rest = new RestClient('', (url, init) => {
     const answer = answers[`${init?.method ?? 'GET'} ${url}`];
     if (answer === undefined) return Promise.reject(new TypeError('refused'));
-    const [status, body] = answer();
+    const [status, body] = answer(typeof init?.body === 'string' ? init.body : '');
     return Promise.resolve(new Response(status === 204 ? null : JSON.stringify(body), { status }));
   });
   const subject = new Catalogue(store, rest, session, notices, later, () => 'key');
@@ -120,6 +120,69 @@ describe('Catalogue', () => {
     );
     expect(store.state.launchErrors).toEqual([{ field: 'seed', message: 'must be at least 0' }]);
     expect(store.state.runId).toBeNull();
+  });
+
+  it('flies a run again with changes', async () => {
+    const sent: unknown[] = [];
+    const flown = { seed: 7, pacing: 'lockstep', estimators: [], camera: { fx_px: 900 } };
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /runs/r1/scenario': () => [200, flown],
+      'POST /runs': (body) => {
+        sent.push(JSON.parse(body));
+        return [201, sampleRun({ id: 'new', status: 'running' })];
+      },
+    });
+    await subject.readScenarios();
+    await subject.repeat(sampleRun({ id: 'r1', scenario: 'of_a_file' }));
+    expect(store.state.scenarioDocument).toEqual(flown);
+    expect(store.state.scenarioName).toBe('course');
+    const texts = [
+      ['seed', '8'],
+      ['pacing', 'lockstep'],
+    ] as const;
+    await subject.launch(new Map(texts));
+    expect(sent).toEqual([{ document: { ...flown, seed: 8 } }]);
+    expect(store.state.runId).toBe('new');
+    await subject.selectScenario('course');
+    await subject.launch(new Map(texts));
+    expect(sent[1]).toEqual({ scenario: 'course', overrides: { seed: 8 } });
+  });
+
+  it('keeps the form if what a run flew cannot be read', async () => {
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /runs/r1/scenario': () => [404, { error: { code: 'not_found', message: 'no run r1' } }],
+    });
+    await subject.readScenarios();
+    await subject.repeat(sampleRun({ id: 'r1' }));
+    expect(store.state.notices.map(({ text }) => text)).toEqual(['no run r1']);
+    expect(store.state.repeatedRun).toBeNull();
+    expect(store.state.scenarioDocument).toEqual(document);
+  });
+
+  it('says once which flights ended, but not those that the viewer stopped', async () => {
+    const running = ['a', 'b', 'c', 'd'].map((id) =>
+      sampleRun({ id, title: id, status: 'running' }),
+    );
+    let runs = running;
+    const { store, subject } = catalogue({ 'GET /runs': () => [200, { runs }] });
+    await subject.readRuns();
+    expect(store.state.notices).toEqual([]);
+    runs = [
+      sampleRun({ id: 'a', title: 'a', status: 'completed' }),
+      sampleRun({ id: 'b', title: 'b', status: 'failed', error: 'no imagery' }),
+      sampleRun({ id: 'c', title: 'c', status: 'cancelled' }),
+      sampleRun({ id: 'd', title: 'd', status: 'running' }),
+    ];
+    await subject.readRuns();
+    const said = store.state.notices.map(({ level, text }) => [level, text]);
+    expect(said).toEqual([
+      ['info', 'a: the flight is complete.'],
+      ['error', 'b: the flight failed. no imagery'],
+    ]);
+    await subject.readRuns();
+    expect(store.state.notices).toHaveLength(2);
   });
 
   it('reports a run that cannot be deleted', async () => {

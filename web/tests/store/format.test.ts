@@ -1,5 +1,11 @@
 import { describe, expect, it } from 'vitest';
-import { formatNumber, formatPercent, formatTime, wrapDegrees } from '../../src/store/format';
+import {
+  formatDuration,
+  formatNumber,
+  formatPercent,
+  formatTime,
+  wrapDegrees,
+} from '../../src/store/format';
 
 describe('formatting', () => {
   it('writes numbers with fixed digits, and a dash for none', () => {
@@ -8,6 +14,15 @@ describe('formatting', () => {
     expect(formatNumber(-0.001, 1)).toBe('0.0');
     expect(formatNumber(null, 1)).toBe('–');
     expect(formatNumber(NaN, 1)).toBe('–');
+  });
+
+  it.each([
+    [0.4, '0 s'],
+    [59.6, '1 min 0 s'],
+    [200, '3 min 20 s'],
+    [7505, '2 h 5 min'],
+  ])('writes a duration of %d s as %s', (duration_s, text) => {
+    expect(formatDuration(duration_s)).toBe(text);
   });
 
   it('writes shares as percent', () => {

@@ -1,6 +1,12 @@
 import { describe, expect, it } from 'vitest';
 import type { JsonObject } from '../../src/protocol/rest_types';
-import { fieldOfError, fieldsOf, fieldText, overridesOf } from '../../src/store/launch_form';
+import {
+  fieldOfError,
+  fieldsOf,
+  fieldText,
+  overridesOf,
+  withOverrides,
+} from '../../src/store/launch_form';
 
 const course: JsonObject = {
   seed: 1,
@@ -70,6 +76,21 @@ describe('the launcher', () => {
         { name: 'drifting', type: 'drifting' },
       ],
     });
+  });
+
+  it('puts values into a document as the server does', () => {
+    const document: JsonObject = { seed: 1, flight: { course: { airspeed_m_s: 15 } } };
+    const changed = withOverrides(document, {
+      'flight.course.airspeed_m_s': 25,
+      'flight.course.wind.speed_m_s': 3,
+      estimators: [],
+    });
+    expect(changed).toEqual({
+      seed: 1,
+      flight: { course: { airspeed_m_s: 25, wind: { speed_m_s: 3 } } },
+      estimators: [],
+    });
+    expect(document).toEqual({ seed: 1, flight: { course: { airspeed_m_s: 15 } } });
   });
 
   it('distinguishes two estimators of the same type', () => {

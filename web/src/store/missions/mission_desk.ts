@@ -64,6 +64,7 @@ export class MissionDesk extends MissionEditor {
     const draft = readDraft(this.storage, this.newId);
     if (draft === null) await this.startNew();
     else await this.show(draft, null);
+    this.reporter.schedule();
   }
 
   close(): void {

@@ -162,11 +162,10 @@ function keptHeight(made: SimpleItem, old: SimpleItem): SimpleItem {
   return { ...withParam(made, 6, old.params[6] ?? 0), frame: old.frame };
 }
 
-/** Heights of an item's place: of the path, of the ground, and of home [ellipsoid, m]. */
+/** Heights of an item, as the server flies them. */
 export interface ItemHeights {
-  path_m: number;
-  ground_m: number;
-  home_m: number;
+  above_ground_m: number;
+  above_home_m: number;
 }
 
 /**
@@ -181,17 +180,17 @@ export function withFrame(
 ): Mission {
   return changed(mission, id, (item) => {
     if (item.frame === frame) return item;
-    const base_m = heights === null ? null : baseOf(frame, mission, heights);
-    const height_m = base_m === null || heights === null ? item.params[6] : heights.path_m - base_m;
+    const height_m = heights === null ? item.params[6] : heightIn(frame, mission, heights);
     const rounded = Math.round((height_m ?? 0) * 10) / 10;
     return { ...withParam(item, 6, rounded), frame };
   });
 }
 
-function baseOf(frame: number, { home }: Mission, heights: ItemHeights): number {
-  if (frame === kFrame.aboveGround) return heights.ground_m;
+function heightIn(frame: number, { home }: Mission, heights: ItemHeights): number {
+  if (frame === kFrame.aboveGround) return heights.above_ground_m;
   // The server keeps heights above sea level as differences from home's.
-  return frame === kFrame.seaLevel ? heights.home_m - home.alt_msl_m : heights.home_m;
+  const base_m = frame === kFrame.seaLevel ? home.alt_msl_m : 0;
+  return heights.above_home_m + base_m;
 }
 
 /** Index at which a new item follows another one; at the end without one. */

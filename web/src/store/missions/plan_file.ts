@@ -150,6 +150,8 @@ function itemFrom(item: Json, path: string, id: number): MissionItem {
 
 function simpleFrom(item: JsonObject, path: string): SimpleItem {
   const { type: _type, command, frame, params, autoContinue, ...extra } = item;
+  // Items are counted again when they are written.
+  delete extra['doJumpId'];
   void _type;
   if (!isNumber(command) || !isNumber(frame)) {
     throw new MissionFileError(`${path}: must have a command and a frame`);

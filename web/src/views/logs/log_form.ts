@@ -1,9 +1,8 @@
 // How the chosen log is flown.
+import { kEstimatorChoices } from '../../store/launch_form';
 import { flyableSources } from '../../store/logs/log_flight';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
-
-const kEstimators = ['feature', 'perfect', 'drifting'] as const;
 
 export class LogForm {
   readonly root: HTMLElement;
@@ -17,9 +16,10 @@ export class LogForm {
   private readonly agl = numberInput('log-agl');
   private readonly turn = numberInput('log-turn');
   private readonly geoid = numberInput('log-geoid');
-  private readonly boxes = kEstimators.map((name) =>
-    h('input', { type: 'checkbox', value: name, 'data-log-estimator': name }),
-  );
+  private readonly boxes = kEstimatorChoices.map(({ value, label }) => ({
+    box: h('input', { type: 'checkbox', value, 'data-log-estimator': value }),
+    label,
+  }));
   private readonly errors = h('div', { class: 'form-errors', role: 'alert' });
   private readonly button = h('button', { class: 'primary', type: 'submit' }, 'Fly');
 
@@ -59,7 +59,7 @@ export class LogForm {
         h(
           'div',
           { class: 'checks' },
-          ...this.boxes.map((box) => h('label', { class: 'check' }, box, box.value)),
+          ...this.boxes.map(({ box, label }) => h('label', { class: 'check' }, box, label)),
         ),
       ),
     ];
@@ -81,9 +81,10 @@ export class LogForm {
       input.value.trim() === '' || Number.isNaN(Number(input.value)) ? null : Number(input.value);
     change(this.from, () => logs.set({ from_s: time(this.from) }));
     change(this.to, () => logs.set({ to_s: time(this.to) }));
-    for (const box of this.boxes) {
+    const boxes = this.boxes.map(({ box }) => box);
+    for (const box of boxes) {
       change(box, () =>
-        logs.set({ estimators: this.boxes.filter((b) => b.checked).map((b) => b.value) }),
+        logs.set({ estimators: boxes.filter((b) => b.checked).map((b) => b.value) }),
       );
     }
   }
@@ -103,7 +104,7 @@ export class LogForm {
     this.rebase.checked = flight.rebase;
     this.agl.disabled = !flight.rebase;
     this.turn.disabled = !flight.rebase;
-    this.boxes.forEach((box) => (box.checked = flight.estimators.includes(box.value)));
+    this.boxes.forEach(({ box }) => (box.checked = flight.estimators.includes(box.value)));
     const sources = info === null ? [] : flyableSources(info);
     const problems = flightErrors.map(({ field, message }) =>
       field === '' ? message : `${shortField(field)}: ${message}`,

@@ -249,18 +249,8 @@ export class ItemForm {
     const item = this.item();
     if (report === null || report === undefined || outdated === true || item === null) return null;
     const place = placesByItem(report).get(this.numberOf(item));
-    const simple = this.simple();
-    if (place === undefined || simple === null) return null;
-    // Home's ground follows from an item that counts from it.
-    const home = report.items.flatMap((other) => {
-      const of = this.page?.draft?.mission.items.find((one) => this.numberOf(one) === other.item);
-      const relative = of?.kind === 'simple' && of.frame === kFrame.aboveHome;
-      return relative ? [other.alt_ellipsoid_m - (of.params[6] ?? 0)] : [];
-    })[0];
-    const { world, draft } = this.page ?? {};
-    const ground =
-      home ?? (draft?.mission.home.alt_msl_m ?? 0) + (world?.sea_level_ellipsoid_m ?? 0);
-    return { path_m: place.alt_ellipsoid_m, ground_m: place.ground_ellipsoid_m, home_m: ground };
+    if (place === undefined || this.simple() === null) return null;
+    return { above_ground_m: place.height_agl_m, above_home_m: place.height_above_home_m };
   }
 
   private circleFields(id: number, command: number): Field[] {

@@ -10,7 +10,7 @@ import {
 import { itemOfNumber, kCommand } from '../../store/missions/mission_item';
 import type { MissionPage } from '../../store/missions/mission_page';
 import type { Topic } from '../../store/state';
-import { h, rebuild, setText } from '../dom';
+import { h, rebuild } from '../dom';
 import type { Context, View } from '../view';
 import type { CheckGroup } from './checks';
 import { checkGroups } from './checks';
@@ -77,6 +77,7 @@ export class MissionPageView implements View {
         h('section', { class: 'mission-verdict' }, h('h3', {}, 'Checks'), this.checks),
       ),
     );
+    this.listenToKeys();
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -133,18 +134,20 @@ export class MissionPageView implements View {
     };
   }
 
-  private showChecks({ report, errors, outdated }: MissionPage): void {
+  private showChecks({ draft, report, errors, outdated }: MissionPage): void {
     this.checks.classList.toggle('outdated', outdated);
-    rebuild(this.checks, JSON.stringify([errors, report?.warnings ?? null]), () => {
+    const isEmpty = draft === null || draft.mission.items.length === 0;
+    rebuild(this.checks, JSON.stringify([isEmpty, errors, report?.warnings ?? null]), () => {
       if (errors.length > 0) {
         return errors.map(({ field, message }) =>
           h('li', { 'data-kind': 'error' }, field === '' ? message : `${field}: ${message}`),
         );
       }
       if (report === null) {
-        return [
-          h('li', { class: 'muted' }, 'Place items on the map: they are checked as you draw.'),
-        ];
+        const text = isEmpty
+          ? 'Place items on the map: they are checked as you draw.'
+          : 'The mission is being checked.';
+        return [h('li', { class: 'muted' }, text)];
       }
       const groups = checkGroups(report.warnings);
       if (groups.length === 0) return [h('li', { class: 'fine' }, 'All limits are kept.')];
@@ -219,6 +222,16 @@ export class MissionPageView implements View {
     this.message.hidden = this.message.childElementCount === 0;
   }
 
+  /** After a click on a button or on the map nothing has the focus, but keys are for this page. */
+  private listenToKeys(): void {
+    const listen = (event: KeyboardEvent) => {
+      const { missionPage, paletteOpen, helpOpen } = this.context.store.state;
+      const isFree = missionPage.open && !paletteOpen && !helpOpen;
+      if (isFree && event.target === document.body) this.onKey(event);
+    };
+    document.addEventListener('keydown', listen, true);
+  }
+
   private onKey(event: KeyboardEvent): void {
     const command = event.ctrlKey || event.metaKey;
     const { target } = event;
@@ -289,9 +302,5 @@ export class MissionPageView implements View {
     const [lat, lon] = this.map.middle();
     const scale = metresPerDegree(lat);
     return [lat + north_m / scale.north, lon + east_m / scale.east];
-  }
-
-  onHidden(): void {
-    setText(this.message, '');
   }
 }

@@ -192,6 +192,8 @@ describe('MissionDesk', () => {
     await again.open();
     expect(page().draft).toMatchObject({ title: 'Über den Hügel', base: 'course' });
     expect(page().draft?.mission.items).toHaveLength(1);
+    await settle();
+    expect(page().report).not.toBeNull();
     kept.set('overfly.mission', '{"title": 7}');
     await makeDesk().open();
     expect(page().draft?.mission.items).toHaveLength(0);

@@ -100,7 +100,7 @@ describe('edits of a mission', () => {
 
   it('count heights from elsewhere without moving the item', () => {
     const mission = missionOf(kCommand.waypoint);
-    const heights = { path_m: 520, ground_m: 220, home_m: 197 };
+    const heights = { above_ground_m: 300, above_home_m: 323 };
     const home = itemAt(withFrame(mission, 1, kFrame.aboveHome, heights), 0);
     expect(home).toMatchObject({ frame: kFrame.aboveHome });
     expect(home.params[6]).toBe(323);
