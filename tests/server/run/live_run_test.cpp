@@ -350,13 +350,13 @@ TEST(LiveScenario, ConnectsOnlyWhereTheOperatorAllows) {
   EXPECT_FALSE(check_link(live, {"udp-listen:127.0.0.1:14551"}).ok());
 
   // What the scenario's file does may be done, nothing else.
-  EXPECT_TRUE(check_reach(live, live).ok());
-  EXPECT_THAT(check_reach(live, course).error().message,
+  EXPECT_TRUE(check_reach(live, {live}).ok());
+  EXPECT_THAT(check_reach(live, {course}).error().message,
               HasSubstr("flight.mavlink: must be as in the scenario's file"));
   const Scenario arming = small_scenario(
       {"flight.mavlink.link=udp-listen:localhost:14550", "flight.mavlink.arm_and_start=true"});
-  EXPECT_FALSE(check_reach(arming, live).ok());
-  EXPECT_TRUE(check_reach(course, live).ok());
+  EXPECT_FALSE(check_reach(arming, {live}).ok());
+  EXPECT_TRUE(check_reach(course, {live}).ok());
 }
 
 }  // namespace

@@ -42,7 +42,11 @@ export class CaptureView {
   );
   private readonly finish = button('No more images', 'finish', 'Ends the source; the views stay');
   private readonly clear = button('Forget views', 'clear', 'Begins again with the same source');
-  private readonly leave = button('End', 'end-calibration', 'Ends the calibration and forgets its views');
+  private readonly leave = button(
+    'End',
+    'end-calibration',
+    'Ends the calibration and forgets its views',
+  );
   private readonly send = button(
     'Choose images',
     'choose-images',
