@@ -63,7 +63,7 @@ describe('pictures of a camera', { skip, timeout: 600_000 }, () => {
     await dashboard.open(`${stage.server.address}#layout=camera&run=${kNoisy}&t=4`);
     await dashboard.untilSameInstant(['scene', ...kOfCamera]);
     for (const panel of kOfCamera) {
-      assert.ok((await dashboard.picture(panel)).deviation > 1, `${panel} is empty`);
+      await dashboard.untilPictured(panel);
     }
     const legend = await view('depth').locator('.colour-legend').innerText();
     assert.match(legend, /Depth \[m\]/);

@@ -207,6 +207,14 @@ export class Dashboard {
     }, panel);
   }
 
+  /** Waits until a panel's picture shows something: the first one may be of a panel without size. */
+  async untilPictured(panel) {
+    for (let tries = 0; (await this.picture(panel)).deviation <= 1; ++tries) {
+      if (tries === 100) throw new Error(`the picture of ${panel} stays empty`);
+      await this.page.waitForTimeout(100);
+    }
+  }
+
   /** Waits until a panel's picture has stayed the same for as long as one takes to be drawn. */
   async untilStill(panel) {
     const end_ms = Date.now() + kPatience_ms;

@@ -77,7 +77,7 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
-      ...pageButtons(context),
+      h('nav', { class: 'page-buttons', 'aria-label': 'Pages' }, ...pageButtons(context)),
       this.layouts.root,
       this.themes.root,
       this.connection,
