@@ -84,7 +84,7 @@ try {
   await page.locator('.score-table tr[data-alignment=sim3]').first().waitFor();
   await page.waitForTimeout(1000);
   await save('dashboard_scores');
-  await page.getByLabel('Close').first().click();
+  await page.keyboard.press('Escape');
   await page.emulateMedia({ colorScheme: 'dark' });
   await page.locator('[data-role=open-calibration]').click();
   await page.locator('#calibration-name').selectOption('camera_faults');
@@ -96,7 +96,7 @@ try {
   await page.locator('[data-role=last-view]').filter({ hasText: 'View 5' }).waitFor();
   await page.waitForTimeout(1000);
   await save('dashboard_calibration');
-  await page.getByLabel('Close').first().click();
+  await page.keyboard.press('Escape');
   await page.locator('[data-role=open-missions]').click();
   await page.locator('[data-role=mission-map][data-world="builtin:1"]').waitFor();
   await page.locator('#mission-open').selectOption('airfield_mission');
