@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <list>
-#include <system_error>
 #include <thread>
 #include <utility>
 
-#include "core/outside/file_text.hpp"
+#include "server/experiments/flight_files.hpp"
 #include "server/experiments/flight_process.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/scoring/run_metrics_json.hpp"
@@ -29,31 +27,13 @@ struct Flying {
   int attempts = 1;
 };
 
-Status make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error) return {};
-  return Error{ErrorCode::kIo, folder.string() + ": cannot create: " + error.message()};
-}
-
-/// The last line that a flight's process printed, for messages.
-std::string last_words(const fs::path& output) {
-  constexpr std::uint64_t kMostOutputBytes = std::uint64_t{16} << 20U;
-  constexpr std::size_t kLongestWords = 500;
-  const Result<std::string> text = read_file_text(output, kMostOutputBytes);
-  if (!text) return "";
-  std::string words = *text;
-  while (!words.empty() && words.back() == '\n') words.pop_back();
-  words = words.substr(words.rfind('\n') + 1);
-  return words.substr(0, kLongestWords);
-}
-
 class SweepFlyer {
  public:
   SweepFlyer(const Sweep& sweep, const SweepOptions& options, SweepPlan plan, SweepResults results)
       : sweep_(sweep),
         options_(options),
         processes_(options.program),
+        files_(options.folder),
         flown_{std::move(plan), std::move(results), {}, false} {
     flown_.progress.most = flown_.plan.most_flights();
   }
@@ -77,13 +57,6 @@ class SweepFlyer {
   Error stopped(const Error& error) {
     processes_.stop();
     return error;
-  }
-
-  [[nodiscard]] fs::path run_folder(const std::string& id) const {
-    return options_.folder / "runs" / id;
-  }
-  [[nodiscard]] fs::path output_file(const std::string& id) const {
-    return options_.folder / "output" / (id + ".txt");
   }
 
   Status start_flights() {
@@ -113,8 +86,7 @@ class SweepFlyer {
   /// Takes over a flight that was completed before its results were written.
   Status begin(Flying flying) {
     const std::string id = flying.due.key;
-    const Result<RunInfo> info = read_run_info(run_folder(id));
-    if (info && info->status == RunStatus::kCompleted) {
+    if (files_.is_completed(id)) {
       flying_.push_back(std::move(flying));
       return end({id, 0.0, false, ""});
     }
@@ -124,16 +96,8 @@ class SweepFlyer {
   }
 
   Status launch(const Flying& flying) {
-    const std::string& id = flying.due.key;
-    std::error_code error;
-    fs::remove_all(run_folder(id), error);  // of a flight that was not completed
-    if (error) {
-      return Error{ErrorCode::kIo,
-                   run_folder(id).string() + ": cannot be removed: " + error.message()};
-    }
-    const fs::path scenario = options_.folder / "scenarios" / (id + ".json");
-    if (Status status = write_json(scenario, flying.due.scenario.resolved); !status) return status;
-    return processes_.start({id, scenario, run_folder(id), output_file(id), sweep_.timeout_s});
+    const DueFlight& due = flying.due;
+    return files_.launch(processes_, due.key, due.scenario.resolved, sweep_.timeout_s);
   }
 
   Status take_ended() {
@@ -144,28 +108,14 @@ class SweepFlyer {
     return {};
   }
 
-  /// Why a flight has no results; empty if it has.
-  [[nodiscard]] std::string failure_of(const EndedFlight& ended) const {
-    if (ended.timed_out) {
-      return "took longer than timeout_s = " + Json(sweep_.timeout_s).dump();
-    }
-    const Result<RunInfo> info = read_run_info(run_folder(ended.id));
-    if (info && info->status == RunStatus::kCompleted && info->problem.empty()) return "";
-    if (info && !info->problem.empty()) return info->problem;
-    if (info && !info->error.empty()) return info->error;
-    const std::string words = last_words(output_file(ended.id));
-    return ended.reason.empty() ? "no run was recorded"
-                                : ended.reason + (words.empty() ? "" : ": " + words);
-  }
-
   Status end(const EndedFlight& ended) {
     const auto flying = std::find_if(
         flying_.begin(), flying_.end(), [&](const Flying& f) { return f.due.key == ended.id; });
     flown_.progress.spent_s += ended.duration_s;
-    std::string failure = failure_of(ended);
+    std::string failure = files_.failure(ended, sweep_.timeout_s);
     RunMetrics metrics;
     if (failure.empty()) {
-      Result<RunMetrics> read = read_run_metrics(run_folder(ended.id));
+      Result<RunMetrics> read = read_run_metrics(files_.run(ended.id));
       if (read) metrics = std::move(*read);
       if (!read) failure = read.error().message;
     }
@@ -232,6 +182,7 @@ class SweepFlyer {
   const SweepOptions& options_;
   const MemoryBudget budget_ = MemoryBudget::of_machine(false);
   FlightProcesses processes_;
+  FlightFiles files_;
   FlownSweep flown_;
   std::list<Flying> flying_;
   std::optional<DueFlight> waiting_;  ///< for memory
@@ -253,9 +204,7 @@ Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options) {
   if (!cells) return cells.error();
   Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells));
   if (!plan) return plan.error();
-  for (const char* name : {"runs", "scenarios", "output"}) {
-    if (Status status = make_folder(options.folder / name); !status) return status.error();
-  }
+  if (Status status = FlightFiles(options.folder).create(); !status) return status.error();
   const Result<RunLock> lock = RunLock::take(options.folder);
   if (!lock) return lock.error();
   Result<SweepResults> results = SweepResults::open(options.folder);

@@ -1,5 +1,7 @@
 #include "server/report/html_parts.hpp"
 
+#include "server/files/build_info.hpp"
+#include "server/report/page_style.hpp"
 #include "server/report/plot/markup.hpp"
 
 namespace overfly::server::report {
@@ -23,6 +25,21 @@ std::string content_of(const Cell& cell) {
 }
 
 }  // namespace
+
+std::string program_text() { return version() + ", commit " + git_commit(); }
+
+std::string page_start(const std::string& title) {
+  constexpr std::size_t kLongestTitle = 240;
+  // Nothing is loaded and no script runs, even if a text were not escaped.
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "
+         "data:; "
+         "style-src 'unsafe-inline'\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta name=\"generator\" content=\"Overfly " +
+         escaped(program_text()) + "\">\n<title>" + escaped(title, kLongestTitle) +
+         "</title>\n<style>\n" + style_sheet() + "</style>\n</head>\n<body>\n";
+}
 
 std::string heading(int level, const std::string& text) {
   const std::string tag = "h" + std::to_string(level);

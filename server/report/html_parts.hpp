@@ -6,6 +6,12 @@
 
 namespace overfly::server::report {
 
+/// Version and commit of this build: "0.1.0, commit 1a2b3c4".
+[[nodiscard]] std::string program_text();
+
+/// A page up to its `<body>`, with the style sheet. Nothing is loaded and no script runs.
+[[nodiscard]] std::string page_start(const std::string& title);
+
 /// `<h2>` to `<h4>`. @param level  in [2, 4]
 [[nodiscard]] std::string heading(int level, const std::string& text);
 [[nodiscard]] std::string paragraph(const std::string& text, const std::string& css_class = "");

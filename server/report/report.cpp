@@ -10,7 +10,6 @@
 
 #include "core/cancel.hpp"
 #include "core/text/number_text.hpp"
-#include "server/files/build_info.hpp"
 #include "server/files/take_name.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
@@ -18,7 +17,6 @@
 #include "server/report/figures/time_figures.hpp"
 #include "server/report/figures/track_figures.hpp"
 #include "server/report/html_parts.hpp"
-#include "server/report/page_style.hpp"
 #include "server/report/plot/markup.hpp"
 #include "server/report/plot/series.hpp"
 #include "server/report/run/flight_groups.hpp"
@@ -118,18 +116,11 @@ std::string title_of(const ReportContent& content) {
 
 std::string head_of(const ReportContent& content) {
   const std::string title = escaped(title_of(content), 200);
-  const std::string program = escaped(version() + ", commit " + git_commit());
-  std::string markup =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      // Nothing is loaded and no script runs, even if a text were not escaped.
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-      "style-src 'unsafe-inline'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"Overfly " +
-      program + "\">\n<title>" + title + " - Overfly report</title>\n<style>\n" + style_sheet() +
-      "</style>\n</head>\n<body>\n<header>\n<h1>" + title +
-      "</h1>\n<p class=\"lead\">Report of Overfly " + program + " on " +
-      escaped(counted(content.runs.size(), "run")) + "</p>\n<nav aria-label=\"Sections\">";
+  const std::string program = escaped(program_text());
+  std::string markup = page_start(title_of(content) + " - Overfly report") + "<header>\n<h1>" +
+                       title + "</h1>\n<p class=\"lead\">Report of Overfly " + program + " on " +
+                       escaped(counted(content.runs.size(), "run")) +
+                       "</p>\n<nav aria-label=\"Sections\">";
   const auto link = [&](const char* id, const char* text) {
     markup += std::string("<a href=\"#") + id + "\">" + text + "</a>";
   };

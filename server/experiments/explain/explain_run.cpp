@@ -1,0 +1,391 @@
+#include "server/experiments/explain/explain_run.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/text/number_text.hpp"
+#include "server/experiments/flight_files.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
+#include "server/scenario/document/scenario_file.hpp"
+#include "server/scoring/run_metrics_json.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using evaluation::Outcome;
+using Causes = std::vector<Cause>;
+
+/// Flights that are left for the tests of what was found.
+constexpr std::size_t kReservedFlights = 4;
+constexpr std::size_t kMostConfirmed = 2;
+constexpr int kMostMarginFlights = 3;
+/// Ground without imagery that may make an estimator fail, as a share of the image.
+constexpr double kMuchVoid = 0.3;
+
+std::vector<CauseChange> without_all(const Causes& causes, const Causes& but = {}) {
+  std::vector<CauseChange> changes;
+  for (const Cause cause : causes) {
+    if (!holds(but, cause)) changes.push_back(without(cause));
+  }
+  return changes;
+}
+
+bool has_survived(const Reflight* flight) { return flight != nullptr && flight->survived; }
+bool has_failed(const Reflight* flight) { return flight != nullptr && flight->failed(); }
+
+std::string share_name(Cause cause, double share) {
+  char text[64];
+  std::snprintf(text, sizeof text, "with %.3g %% of ", 100.0 * share);
+  return text + words_for(cause);
+}
+
+/// What is explained.
+struct FailedRun {
+  fs::path folder;
+  Json document;
+  std::size_t estimator = 0;
+  double duration_s = 0.0;
+  evaluation::Score score;
+};
+
+class Explainer {
+ public:
+  Explainer(const FailedRun& run, const ExplainOptions& options, Explanation explanation)
+      : run_(run),
+        options_(options),
+        flights_(options.flights, run.folder),
+        result_(std::move(explanation)) {}
+
+  Result<Explanation> explain() {
+    using Step = Status (Explainer::*)();
+    for (const Step step : {&Explainer::find_part,
+                            &Explainer::take_away_each,
+                            &Explainer::change_each,
+                            &Explainer::keep_each,
+                            &Explainer::take_away_pairs,
+                            &Explainer::confirm,
+                            &Explainer::find_margin}) {
+      if (Status status = (this->*step)(); !status) return status.error();
+      if (!result_.reproduced) break;
+    }
+    judge_data();
+    result_.flights.assign(flights_.flights().begin(), flights_.flights().end());
+    return std::move(result_);
+  }
+
+ private:
+  using Flown = Result<std::vector<const Reflight*>>;
+
+  [[nodiscard]] Flown fly(const std::vector<PlannedReflight>& plan) {
+    return flights_.fly(document_, result_.part, plan);
+  }
+
+  Status find_part() {
+    for (const CriticalPart& part : critical_parts(run_.score, run_.duration_s)) {
+      document_ = part_document(run_.document, run_.folder, run_.estimator, part);
+      result_.part = part;
+      const Flown flown = fly({{"as it was", {}, false}});
+      if (!flown) return flown.error();
+      const Reflight* flight = flown->front();
+      if (flight != nullptr && !flight->error.empty()) {
+        return Error{ErrorCode::kInternal, "cannot be flown again: " + flight->error};
+      }
+      if (has_failed(flight)) {
+        control_ = flight;
+        result_.reproduced = true;
+        break;
+      }
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool is_wanted(Cause cause) const {
+    return options_.causes.empty() || holds(options_.causes, cause);
+  }
+
+  /// Wanted causes that can be changed, the most suspicious first.
+  [[nodiscard]] Causes changeable(bool disturbances) {
+    Causes causes;
+    for (const Cause cause : all_causes()) {
+      if (!is_wanted(cause) || is_disturbance(cause) != disturbances) continue;
+      if (const auto reason = why_unchangeable(document_, cause)) {
+        result_.untried.push_back({cause, *reason});
+      } else {
+        causes.push_back(cause);
+      }
+    }
+    const double instant_s = run_.score.outcome_time_s.value_or(0.0) - result_.part.from_s;
+    std::stable_sort(causes.begin(), causes.end(), [&](Cause a, Cause b) {
+      return suspicion(document_, a, instant_s) > suspicion(document_, b, instant_s);
+    });
+    return causes;
+  }
+
+  /// The first causes that fit the flights left; the others are noted as not tried.
+  [[nodiscard]] Causes affordable(Causes causes, std::size_t other_flights) {
+    const std::size_t reserved = kReservedFlights + other_flights;
+    const std::size_t most =
+        std::max<std::size_t>(1, flights_.left() - std::min(flights_.left(), reserved));
+    while (causes.size() > most) {
+      result_.untried.push_back(
+          {causes.back(),
+           "beyond the limit of " + counted(options_.flights.most_flights, "flight")});
+      causes.pop_back();
+    }
+    return causes;
+  }
+
+  /// Flies without each cause and notes those without which the estimator survives.
+  Status fly_without(const Causes& causes) {
+    std::vector<PlannedReflight> plan;
+    for (const Cause cause : causes) {
+      plan.push_back({words_without(cause), {without(cause)}, false});
+    }
+    const Flown flown = fly(plan);
+    if (!flown) return flown.error();
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if ((*flown)[i] == nullptr) continue;
+      tried_.push_back(causes[i]);
+      if (has_survived((*flown)[i])) result_.necessary.push_back(causes[i]);
+    }
+    return {};
+  }
+
+  Status take_away_each() {
+    disturbances_ = changeable(true);
+    if (disturbances_.empty()) {
+      calm_ = control_;
+      return {};
+    }
+    const Flown flown = fly({{"without any disturbance", without_all(disturbances_), false}});
+    if (!flown) return flown.error();
+    calm_ = flown->front();
+    return fly_without(affordable(disturbances_, 0));
+  }
+
+  /// Changes texture, features, roll rate and start, if that is what is left.
+  Status change_each() {
+    const bool named = !options_.causes.empty();
+    if (!named && (!result_.necessary.empty() || has_survived(calm_))) return {};
+    return fly_without(affordable(changeable(false), 0));
+  }
+
+  /// Causes that may be enough by themselves.
+  [[nodiscard]] Causes candidates() const {
+    if (!result_.necessary.empty()) return result_.necessary;
+    return has_survived(calm_) ? disturbances_ : Causes{};
+  }
+
+  /// Flies with one cause as it was and all others taken away.
+  Status keep_each() {
+    const Causes kept = affordable_kept(candidates());
+    Causes others = disturbances_;
+    for (const Cause cause : result_.necessary) {
+      if (!holds(others, cause)) others.push_back(cause);
+    }
+    std::vector<PlannedReflight> plan;
+    for (const Cause cause : kept) {
+      plan.push_back({"with only " + words_for(cause), without_all(others, {cause}), false});
+    }
+    const Flown flown = fly(plan);
+    if (!flown) return flown.error();
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      if (has_failed((*flown)[i])) result_.sufficient.push_back(kept[i]);
+    }
+    if (result_.sufficient.empty() && result_.necessary.size() > 1) {
+      result_.together = result_.necessary;
+    }
+    return {};
+  }
+
+  [[nodiscard]] Causes affordable_kept(Causes causes) const {
+    if (causes.size() > flights_.left()) causes.resize(flights_.left());
+    return causes;
+  }
+
+  /// Where no single cause has to go, two may have to.
+  Status take_away_pairs() {
+    if (!result_.necessary.empty()) return {};
+    const Causes& causes = result_.sufficient.size() > 1 ? result_.sufficient : tried_;
+    for (std::size_t last = 1; last < causes.size(); ++last) {
+      for (std::size_t first = 0; first < last && flights_.left() > 0; ++first) {
+        const Causes pair = {causes[first], causes[last]};
+        const Flown flown = fly({{words_without(pair[0]) + " and " + words_without(pair[1]),
+                                  without_all(pair),
+                                  false}});
+        if (!flown) return flown.error();
+        if (!has_survived(flown->front())) continue;
+        result_.pair = pair;
+        return {};
+      }
+    }
+    return {};
+  }
+
+  /// Flies what was found again with other random numbers.
+  Status confirm() {
+    Causes found = result_.necessary;
+    if (found.size() > kMostConfirmed) found.resize(kMostConfirmed);
+    if (found.empty() || flights_.left() < 1 + found.size()) return {};
+    std::vector<PlannedReflight> plan = {{"as it was, other random numbers", {}, true}};
+    for (const Cause cause : found) {
+      plan.push_back({words_without(cause) + ", other random numbers", {without(cause)}, true});
+    }
+    const Flown flown = fly(plan);
+    if (!flown) return flown.error();
+    result_.reproduced_with_other_seed = has_failed(flown->front());
+    if (!*result_.reproduced_with_other_seed) return {};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (has_failed((*flown)[i + 1])) std::erase(result_.necessary, found[i]);
+    }
+    return {};
+  }
+
+  Status find_margin() {
+    const Causes& causes = result_.necessary.empty() ? result_.sufficient : result_.necessary;
+    const auto scaled = std::find_if(causes.begin(), causes.end(), [&](Cause cause) {
+      return holds(result_.necessary, cause) && can_scale(document_, cause);
+    });
+    if (scaled == causes.end()) return {};
+    CauseMargin margin{*scaled, without(*scaled).share, 1.0};
+    for (int flight = 0; flight < kMostMarginFlights && flights_.left() > 0; ++flight) {
+      const double share = (margin.survives_share + margin.fails_share) / 2.0;
+      const Flown flown = fly({{share_name(*scaled, share), {{*scaled, share}}, false}});
+      if (!flown && flown.error().code == ErrorCode::kInvalidArgument) break;  // beyond a limit
+      if (!flown) return flown.error();
+      const Reflight* made = flown->front();
+      if (!has_survived(made) && !has_failed(made)) break;
+      (has_survived(made) ? margin.survives_share : margin.fails_share) = share;
+    }
+    result_.margin = margin;
+    return {};
+  }
+
+  void judge_data() {
+    if (control_ == nullptr) return;
+    char text[160];
+    if (holds(result_.necessary, Cause::kTexture)) {
+      std::snprintf(text,
+                    sizeof text,
+                    "The imagery has %.2f texels per pixel; with synthetic detail the estimator "
+                    "survives.",
+                    control_->texels_per_pixel_median);
+    } else if (!result_.necessary.empty() || !result_.sufficient.empty()) {
+      return;
+    } else if (control_->texture_limited) {
+      std::snprintf(text,
+                    sizeof text,
+                    "The imagery has %.2f texels per pixel, less than 0.5.",
+                    control_->texels_per_pixel_median);
+    } else if (control_->void_fraction_max > kMuchVoid) {
+      std::snprintf(text,
+                    sizeof text,
+                    "Up to %.0f %% of an image shows no imagery.",
+                    100.0 * control_->void_fraction_max);
+    } else {
+      return;
+    }
+    result_.data_limited = true;
+    result_.data_reason = text;
+  }
+
+  const FailedRun& run_;
+  const ExplainOptions& options_;
+  Reflights flights_;
+  Explanation result_;
+  Json document_;  ///< flies the critical part
+  const Reflight* control_ = nullptr;
+  const Reflight* calm_ = nullptr;  ///< without any disturbance
+  Causes disturbances_;
+  Causes tried_;
+};
+
+Error not_explainable(const fs::path& folder, const std::string& reason) {
+  return {ErrorCode::kInvalidArgument, folder.string() + ": " + reason};
+}
+
+std::string known_names(const RunMetrics& metrics) {
+  std::string names;
+  for (const auto& [name, estimator] : metrics.estimators) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
+/// The estimator to be explained.
+Result<std::string> chosen_estimator(const RunMetrics& metrics,
+                                     const Json& document,
+                                     const std::string& wanted) {
+  if (metrics.estimators.contains(wanted)) return wanted;
+  if (!wanted.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "estimator = " + wanted + ": must be one of " + known_names(metrics)};
+  }
+  std::optional<std::string> first;
+  for (const Json& entry : document.at("estimators")) {
+    const std::string name = entry.at("name").get<std::string>();
+    const auto found = metrics.estimators.find(name);
+    if (found == metrics.estimators.end()) continue;
+    if (!first) first = name;
+    if (found->second.score.outcome != Outcome::kCompleted) return name;
+  }
+  if (first) return *first;
+  return Error{ErrorCode::kInvalidArgument, "the run has no estimator"};
+}
+
+bool has_recorded_images(const Json& document) {
+  const auto recorded = [](const Json& camera) { return camera.contains("images"); };
+  if (document.contains("camera")) return recorded(document.at("camera"));
+  const Json cameras = document.value("cameras", Json::array());
+  return std::any_of(cameras.begin(), cameras.end(), recorded);
+}
+
+}  // namespace
+
+Result<Explanation> explain_run(const fs::path& run_folder, const ExplainOptions& options) {
+  const fs::path folder = fs::absolute(run_folder).lexically_normal();
+  const Result<RunInfo> info = read_run_info(folder);
+  if (!info) return info.error();
+  if (info->status != RunStatus::kCompleted) {
+    return not_explainable(
+        folder, std::string("status = ") + to_string(info->status) + ": must be completed");
+  }
+  const Result<RunMetrics> metrics = read_run_metrics(folder);
+  if (!metrics) return metrics.error();
+  const Result<Scenario> scenario =
+      load_scenario(scenario_file(folder), {}, options.flights.sources);
+  if (!scenario) return scenario.error();
+  const Json& document = scenario->resolved;
+  if (has_recorded_images(document)) {
+    return not_explainable(folder, "recorded images cannot be taken again without a disturbance");
+  }
+  const Result<std::string> name = chosen_estimator(*metrics, document, options.estimator);
+  if (!name) return not_explainable(folder, name.error().message);
+
+  FailedRun run{folder, document, 0, metrics->flight.duration_s, {}};
+  run.score = metrics->estimators.at(*name).score;
+  const Json& entries = document.at("estimators");
+  while (entries.at(run.estimator).at("name") != *name) ++run.estimator;
+
+  Explanation explanation;
+  explanation.run = info->id;
+  explanation.title = info->title;
+  explanation.estimator = *name;
+  explanation.score = run.score;
+  explanation.succeeded = run.score.outcome == Outcome::kCompleted;
+  if (explanation.succeeded) return explanation;
+  if (Status status = FlightFiles(options.flights.folder).create(); !status) return status.error();
+  const Result<RunLock> lock = RunLock::take(options.flights.folder);
+  if (!lock) return lock.error();
+  return Explainer(run, options, std::move(explanation)).explain();
+}
+
+}  // namespace overfly::server::experiments

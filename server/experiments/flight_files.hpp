@@ -1,0 +1,36 @@
+// The files of flights that are flown as processes: scenarios/ID.json, runs/ID, output/ID.txt.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/experiments/flight_process.hpp"
+
+namespace overfly::server::experiments {
+
+class FlightFiles {
+ public:
+  explicit FlightFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Creates the folders. Errors: kIo.
+  [[nodiscard]] Status create() const;
+  [[nodiscard]] std::filesystem::path run(const std::string& id) const;
+  [[nodiscard]] bool is_completed(const std::string& id) const;
+  /// Starts the flight of a scenario. The run folder of a flight that was not completed is removed.
+  /// Errors: kIo; as FlightProcesses::start.
+  [[nodiscard]] Status launch(FlightProcesses& processes,
+                              const std::string& id,
+                              const nlohmann::json& scenario,
+                              double timeout_s) const;
+  /// Why a flight that has ended has no results; empty if it has.
+  [[nodiscard]] std::string failure(const EndedFlight& ended, double timeout_s) const;
+
+ private:
+  [[nodiscard]] std::filesystem::path output(const std::string& id) const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace overfly::server::experiments
