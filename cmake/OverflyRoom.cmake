@@ -48,7 +48,8 @@ endfunction()
 # overfly_test(NAME [LIBS targets...] [TIMEOUT seconds] [FOLDERS subfolders...])
 #
 # One GoogleTest program, NAME_tests, of every *_test.cpp in the current folder and its FOLDERS;
-# each TEST is a separate ctest case, so that skipped tests are reported.
+# each TEST is a separate ctest case, so that skipped tests are reported. OVERFLY_TEST_OPTIMISATION is
+# the level of optimisation in release builds.
 function(overfly_test name)
   cmake_parse_arguments(arg "" "TIMEOUT" "LIBS;FOLDERS" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -67,7 +68,7 @@ function(overfly_test name)
   endif()
   add_executable(${name}_tests ${sources})
   target_link_libraries(${name}_tests PRIVATE ${arg_LIBS} overfly_test_support GTest::gmock GTest::gtest_main)
-  overfly_optimise(${name}_tests 1)
+  overfly_optimise(${name}_tests ${OVERFLY_TEST_OPTIMISATION})
   gtest_discover_tests(${name}_tests
     TEST_PREFIX "${name}."
     DISCOVERY_MODE PRE_TEST

@@ -69,7 +69,8 @@ struct Options {
   std::optional<double> init_true_depth_m;
   /// Mount of the camera. Used to compute roll, pitch and yaw of the body.
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800};
+  /// KITTI's, and those between the position fixes of a long flight.
+  std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800, 1000, 2000, 5000};
 };
 
 /// One truth-estimate pair, in time order.

@@ -41,7 +41,11 @@ class BoardDrawing {
         board_(board),
         paint_(paint),
         T_board_camera_(T_camera_board.inverse()),
-        R_board_camera_(T_board_camera_.rotation.toRotationMatrix()) {}
+        R_board_camera_(T_board_camera_.rotation.toRotationMatrix()) {
+    if (!board.markers) return;
+    marker_gap_ = board.marker_gap();
+    marker_cells_per_square_ = (board.markers->bits + 2) / (1.0 - 2.0 * marker_gap_);
+  }
 
   RadianceImage draw() const {
     const PinholeCamera& size = camera_.pinhole();
@@ -91,22 +95,22 @@ class BoardDrawing {
     // Far from the board all is background.
     const auto number = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
     Part part{number(std::floor(p.x())), number(std::floor(p.y())), -1, -1};
-    if (!board_.markers || !board_.marker_of(part.i, part.j)) return part;
-    const double gap = board_.marker_gap();
-    const int cells = board_.markers->bits + 2;
-    const double cell = (1.0 - 2.0 * gap) / cells;
+    if (!board_.markers || !on_squares(part) || (part.i + part.j) % 2 == 0) return part;
     const auto cell_of = [&](double along) {
-      return std::clamp(static_cast<int>(std::floor((along - gap) / cell)), -1, cells);
+      const double cell = (along - marker_gap_) * marker_cells_per_square_;
+      return std::clamp(static_cast<int>(std::floor(cell)), -1, board_.markers->bits + 2);
     };
     part.col = cell_of(p.x() - part.i);
     part.row = cell_of(p.y() - part.j);
     return part;
   }
 
+  [[nodiscard]] bool on_squares(const Part& part) const {
+    return part.i >= -1 && part.i < board_.cols && part.j >= -1 && part.j < board_.rows;
+  }
+
   [[nodiscard]] float colour(const Part& part) const {
-    const bool on_squares =
-        part.i >= -1 && part.i < board_.cols && part.j >= -1 && part.j < board_.rows;
-    if (!on_squares) {
+    if (!on_squares(part)) {
       const int low = -1 - kBoardBorder;
       const bool on_border = part.i >= low && part.i < board_.cols + kBoardBorder &&
                              part.j >= low && part.j < board_.rows + kBoardBorder;
@@ -153,6 +157,8 @@ class BoardDrawing {
   const BoardPaint& paint_;
   Pose T_board_camera_;
   Eigen::Matrix3d R_board_camera_;
+  double marker_gap_ = 0.0;               ///< from a square's edge, in squares
+  double marker_cells_per_square_ = 0.0;  ///< with the marker's border
 };
 
 }  // namespace

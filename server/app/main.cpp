@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_track_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_sweep_command(app, exit_code);
+  add_envelope_command(app, exit_code);
   add_compare_command(app, exit_code);
   add_table_command(app, exit_code);
   add_explain_command(app, exit_code);

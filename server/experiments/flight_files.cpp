@@ -1,6 +1,7 @@
 #include "server/experiments/flight_files.hpp"
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/outside/file_text.hpp"
@@ -52,9 +53,9 @@ bool FlightFiles::is_completed(const std::string& id) const {
   return info && info->status == RunStatus::kCompleted;
 }
 
-Status FlightFiles::launch(FlightProcesses& processes,
+Status FlightFiles::launch(FlightExecutor& executor,
                            const std::string& id,
-                           const Json& scenario,
+                           const Scenario& scenario,
                            double timeout_s) const {
   std::error_code error;
   fs::remove_all(run(id), error);
@@ -62,8 +63,8 @@ Status FlightFiles::launch(FlightProcesses& processes,
     return Error{ErrorCode::kIo, run(id).string() + ": cannot be removed: " + error.message()};
   }
   const fs::path file = folder_ / "scenarios" / (id + ".json");
-  if (Status status = write_json(file, scenario); !status) return status;
-  return processes.start({id, file, run(id), output(id), timeout_s});
+  if (Status status = write_json(file, scenario.resolved); !status) return status;
+  return executor.start({id, file, run(id), output(id), timeout_s, memory_of(scenario)});
 }
 
 std::string FlightFiles::failure(const EndedFlight& ended, double timeout_s) const {

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/result.hpp"
-#include "server/experiments/flight_process.hpp"
+#include "server/experiments/flight_executor.hpp"
+#include "server/scenario/scenario.hpp"
 
 namespace overfly::server::experiments {
 
@@ -19,10 +19,10 @@ class FlightFiles {
   [[nodiscard]] std::filesystem::path run(const std::string& id) const;
   [[nodiscard]] bool is_completed(const std::string& id) const;
   /// Starts the flight of a scenario. The run folder of a flight that was not completed is removed.
-  /// Errors: kIo; as FlightProcesses::start.
-  [[nodiscard]] Status launch(FlightProcesses& processes,
+  /// Errors: kIo; as FlightExecutor::start.
+  [[nodiscard]] Status launch(FlightExecutor& executor,
                               const std::string& id,
-                              const nlohmann::json& scenario,
+                              const Scenario& scenario,
                               double timeout_s) const;
   /// Why a flight that has ended has no results; empty if it has.
   [[nodiscard]] std::string failure(const EndedFlight& ended, double timeout_s) const;

@@ -1,11 +1,11 @@
 #include "server/experiments/flight_process.hpp"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -36,9 +36,12 @@ std::string reason_of(int status) {
   constexpr int kCannotStart = 127;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotStart);
-  ::setpgid(0, 0);  // Ctrl-C reaches the parent, which stops its children in order.
+  ::setpgid(0, 0);             // Ctrl-C reaches the parent, which stops its children in order.
+  ::signal(SIGPIPE, SIG_DFL);  // A server ignores it, and exec keeps that.
   ::dup2(output, STDOUT_FILENO);
   ::dup2(output, STDERR_FILENO);
+  // A server's sockets must not live on in a flight. Kernels before 5.9 lack this call.
+  ::close_range(STDERR_FILENO + 1, ~0U, 0);
   ::execv(program, arguments);
   ::_exit(kCannotStart);
 }
@@ -59,20 +62,15 @@ Status FlightProcesses::start(const FlightJob& job) {
     return Error{ErrorCode::kIo,
                  job.output.string() + ": " + std::generic_category().message(errno)};
   }
-  std::string scenario = job.scenario.string();
-  std::string folder = job.folder.string();
-  std::string program = program_.string();
-  std::array<std::string, 3> words{"run", "--out", "--quiet"};
-  std::array<char*, 7> arguments{program.data(),
-                                 words[0].data(),
-                                 scenario.data(),
-                                 words[1].data(),
-                                 folder.data(),
-                                 words[2].data(),
-                                 nullptr};
+  std::vector<std::string> words{
+      program_.string(), "run", job.scenario.string(), "--out", job.folder.string(), "--quiet"};
+  words.insert(words.end(), options_.begin(), options_.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
-  if (pid == 0) become(program.c_str(), arguments.data(), output, parent);
+  if (pid == 0) become(arguments[0], arguments.data(), output, parent);
   const int number = errno;
   ::close(output);
   if (pid < 0) {
@@ -83,7 +81,7 @@ Status FlightProcesses::start(const FlightJob& job) {
   return {};
 }
 
-std::optional<EndedFlight> FlightProcesses::ended() {
+Result<std::optional<EndedFlight>> FlightProcesses::ended() {
   for (std::size_t i = 0; i < children_.size(); ++i) {
     Child& child = children_[i];
     int status = 0;
@@ -92,14 +90,23 @@ std::optional<EndedFlight> FlightProcesses::ended() {
       EndedFlight flight{
           child.job.id, seconds_since(child.started), child.timed_out, reason_of(status)};
       children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
-      return flight;
+      return std::optional(std::move(flight));
     }
     if (!child.timed_out && seconds_since(child.started) > child.job.timeout_s) {
       child.timed_out = true;
       ::kill(child.pid, SIGKILL);
     }
   }
-  return std::nullopt;
+  return std::optional<EndedFlight>();
+}
+
+void FlightProcesses::kill(const std::string& id) {
+  for (const Child& child : children_) {
+    if (child.job.id != id) continue;
+    ::kill(child.pid, SIGKILL);
+    ::waitpid(child.pid, nullptr, 0);
+  }
+  std::erase_if(children_, [&](const Child& child) { return child.job.id == id; });
 }
 
 void FlightProcesses::stop() {
@@ -107,7 +114,7 @@ void FlightProcesses::stop() {
   for (const Child& child : children_) ::kill(child.pid, SIGTERM);
   const auto start = Clock::now();
   while (!children_.empty() && seconds_since(start) < kPatience_s) {
-    if (!ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (!*ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   for (const Child& child : children_) {
     ::kill(child.pid, SIGKILL);

@@ -11,42 +11,28 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/experiments/flight_executor.hpp"
 
 namespace overfly::server::experiments {
 
-/// One flight to be flown.
-struct FlightJob {
-  std::string id;
-  std::filesystem::path scenario;  ///< its file
-  std::filesystem::path folder;    ///< run folder to be created
-  std::filesystem::path output;    ///< file for what the process prints
-  double timeout_s = 0.0;
-};
-
-/// A process that has ended.
-struct EndedFlight {
-  std::string id;
-  double duration_s = 0.0;
-  bool timed_out = false;
-  std::string reason;  ///< "exit code 1", "signal 9 (Killed)"; empty for exit code 0
-};
-
 /// Must be used by one thread, the one that starts the processes: they are killed with it.
-class FlightProcesses {
+class FlightProcesses : public FlightExecutor {
  public:
-  /// @param program  runs `PROGRAM run SCENARIO --out FOLDER --quiet`
-  explicit FlightProcesses(std::filesystem::path program) : program_(std::move(program)) {}
-  ~FlightProcesses();  ///< kills
-  FlightProcesses(const FlightProcesses&) = delete;
-  FlightProcesses& operator=(const FlightProcesses&) = delete;
+  /// @param program  runs `PROGRAM run SCENARIO --out FOLDER --quiet OPTIONS...`
+  /// @param options  further ones of `overfly run`
+  explicit FlightProcesses(std::filesystem::path program, std::vector<std::string> options = {})
+      : program_(std::move(program)), options_(std::move(options)) {}
+  ~FlightProcesses() override;  ///< kills
 
-  /// Errors: kIo, kInternal with the system's reason.
-  Status start(const FlightJob& job);
-  [[nodiscard]] std::size_t running() const { return children_.size(); }
-  /// A process that has ended, or was killed because of its time limit. Does not wait.
-  [[nodiscard]] std::optional<EndedFlight> ended();
+  Status start(const FlightJob& job) override;
+  [[nodiscard]] std::size_t running() const override { return children_.size(); }
+  [[nodiscard]] std::size_t flying() const override { return children_.size(); }
+  /// A process that has ended, or was killed because of its time limit. Never an error.
+  [[nodiscard]] Result<std::optional<EndedFlight>> ended() override;
   /// Asks all to stop (SIGTERM), waits up to ten seconds, then kills.
-  void stop();
+  void stop() override;
+  /// Kills one, which then is not returned by ended().
+  void kill(const std::string& id);
 
  private:
   struct Child {
@@ -57,6 +43,7 @@ class FlightProcesses {
   };
 
   std::filesystem::path program_;
+  std::vector<std::string> options_;
   std::vector<Child> children_;
 };
 

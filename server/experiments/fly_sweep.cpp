@@ -1,8 +1,10 @@
 #include "server/experiments/fly_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <list>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -24,15 +26,20 @@ using Json = nlohmann::json;
 struct Flying {
   DueFlight due;
   RunMemory memory;
+  std::shared_ptr<const void> held;  ///< its part of SweepOptions::hold_memory
   int attempts = 1;
 };
 
 class SweepFlyer {
  public:
-  SweepFlyer(const Sweep& sweep, const SweepOptions& options, SweepPlan plan, SweepResults results)
+  SweepFlyer(const Sweep& sweep,
+             const SweepOptions& options,
+             std::unique_ptr<FlightExecutor> executor,
+             SweepPlan plan,
+             SweepResults results)
       : sweep_(sweep),
         options_(options),
-        processes_(options.program),
+        executor_(std::move(executor)),
         files_(options.folder),
         flown_{std::move(plan), std::move(results), {}, false} {
     flown_.progress.most = flown_.plan.most_flights();
@@ -41,11 +48,11 @@ class SweepFlyer {
   Result<FlownSweep> fly() {
     while (!cancelled()) {
       if (Status status = start_flights(); !status) return stopped(status.error());
-      if (processes_.running() == 0) break;
+      if (executor_->running() == 0 && !waiting_) break;
       if (Status status = take_ended(); !status) return stopped(status.error());
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    processes_.stop();
+    executor_->stop();
     flown_.cancelled = cancelled();
     show();
     return std::move(flown_);
@@ -55,12 +62,12 @@ class SweepFlyer {
   [[nodiscard]] bool cancelled() const { return options_.cancel != nullptr && *options_.cancel; }
 
   Error stopped(const Error& error) {
-    processes_.stop();
+    executor_->stop();
     return error;
   }
 
   Status start_flights() {
-    while (processes_.running() < options_.jobs && !cancelled()) {
+    while (executor_->running() < options_.jobs && !cancelled()) {
       if (!waiting_) {
         Result<std::optional<DueFlight>> due = flown_.plan.next(flown_.results);
         if (!due) return due.error();
@@ -69,11 +76,20 @@ class SweepFlyer {
       }
       if (!waiting_) return {};
       const RunMemory memory = memory_of(waiting_->scenario);
-      if (Status status = budget_.check(waiting_->scenario); !status) return status;
-      if (!has_memory(memory)) return {};
+      std::shared_ptr<const void> held;
+      if (options_.open_executor) {
+        // Its workers know their machines' memory.
+      } else if (options_.hold_memory) {
+        held = options_.hold_memory(memory);
+        if (!held) return {};
+      } else {
+        if (Status fits = budget_.check(waiting_->scenario); !fits) return fits;
+        if (!has_memory(memory)) return {};
+      }
       DueFlight flight = std::move(*waiting_);
       waiting_.reset();
-      if (Status status = begin({std::move(flight), memory, 1}); !status) return status;
+      Flying flying{std::move(flight), memory, std::move(held), 1};
+      if (Status status = begin(std::move(flying)); !status) return status;
     }
     return {};
   }
@@ -97,15 +113,16 @@ class SweepFlyer {
 
   Status launch(const Flying& flying) {
     const DueFlight& due = flying.due;
-    return files_.launch(processes_, due.key, due.scenario.resolved, sweep_.timeout_s);
+    return files_.launch(*executor_, due.key, due.scenario, sweep_.timeout_s);
   }
 
   Status take_ended() {
-    while (const std::optional<EndedFlight> ended = processes_.ended()) {
-      if (cancelled()) return {};
-      if (Status status = end(*ended); !status) return status;
+    for (;;) {
+      const Result<std::optional<EndedFlight>> ended = executor_->ended();
+      if (!ended) return ended.error();
+      if (!*ended || cancelled()) return {};
+      if (Status status = end(**ended); !status) return status;
     }
-    return {};
   }
 
   Status end(const EndedFlight& ended) {
@@ -168,32 +185,48 @@ class SweepFlyer {
   void show() {
     SweepProgress& progress = flown_.progress;
     progress.passed = flown_.plan.passed_flights();
+    most_at_once_ = std::max(most_at_once_, executor_->flying());
     if (progress.flown > 0) {
       const auto rest =
           static_cast<double>(progress.most - std::min(progress.passed, progress.most));
       const double each_s = progress.spent_s / static_cast<double>(progress.flown);
-      progress.left_s =
-          rest * each_s / static_cast<double>(std::max<std::size_t>(options_.jobs, 1));
+      progress.left_s = rest * each_s / static_cast<double>(most_at_once_);
     }
     if (options_.progress) options_.progress(progress);
+    // For those who watch the folder; a full disk is noticed where results are written.
+    (void)write_progress(options_.folder, progress);
   }
 
   const Sweep& sweep_;
   const SweepOptions& options_;
   const MemoryBudget budget_ = MemoryBudget::of_machine(false);
-  FlightProcesses processes_;
+  std::unique_ptr<FlightExecutor> executor_;
   FlightFiles files_;
   FlownSweep flown_;
   std::list<Flying> flying_;
   std::optional<DueFlight> waiting_;  ///< for memory
+  std::size_t most_at_once_ = 1;      ///< flights that flew at the same time so far
 };
 
+/// What sweep.json has in addition to the sweep's document.
+constexpr std::array<const char*, 3> kRecorded{"version", "estimator_names", "axis_values"};
+
 /// The sweep as it was flown, for people and for programs that read its folder.
-Json sweep_record(const Sweep& sweep, const SweepPlan& plan) {
+Result<Json> sweep_record(const Sweep& sweep, const SweepPlan& plan) {
+  const Result<std::vector<SweepCell>> cells = cells_of(sweep);
+  if (!cells) return cells.error();
   Json record = sweep.document;
   record["scenario"] = sweep.scenario_file.string();
   record["version"] = version() + " " + git_commit();
   record["estimator_names"] = plan.estimators();
+  Json& values = record["axis_values"] = Json::object();
+  for (const SweepAxis& axis : sweep.axes) values[axis.name] = Json::array();
+  for (const SweepCell& cell : *cells) {
+    for (const auto& [name, value] : cell.values.items()) {
+      Json& known = values[name];
+      if (std::find(known.begin(), known.end(), value) == known.end()) known.push_back(value);
+    }
+  }
   return record;
 }
 
@@ -202,7 +235,31 @@ Json sweep_record(const Sweep& sweep, const SweepPlan& plan) {
 Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options) {
   Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
-  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells));
+  return fly_cells(sweep, std::move(*cells), options);
+}
+
+Status write_sweep(const Sweep& sweep, const SweepPlan& plan, const fs::path& folder) {
+  if (Status status = FlightFiles(folder).create(); !status) return status;
+  const Result<Json> record = sweep_record(sweep, plan);
+  if (!record) return record.error();
+  return write_json(folder / "sweep.json", *record);
+}
+
+Result<Json> read_sweep_document(const fs::path& folder) {
+  const fs::path file = folder / "sweep.json";
+  Result<Json> record = read_json(file, kMaxSweepBytes);
+  if (!record) return record.error();
+  if (!record->is_object()) {
+    return Error{ErrorCode::kUnreadable, file.string() + ": is no JSON object"};
+  }
+  for (const char* name : kRecorded) record->erase(name);
+  return record;
+}
+
+Result<FlownSweep> fly_cells(const Sweep& sweep,
+                             std::vector<SweepCell> cells,
+                             const SweepOptions& options) {
+  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(cells));
   if (!plan) return plan.error();
   if (Status status = FlightFiles(options.folder).create(); !status) return status.error();
   const Result<RunLock> lock = RunLock::take(options.folder);
@@ -213,11 +270,17 @@ Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options) {
     options.warn("results.jsonl: " + std::to_string(results->unreadable_lines()) +
                  " lines are no results and are ignored");
   }
-  const fs::path record = options.folder / "sweep.json";
-  if (Status status = write_json(record, sweep_record(sweep, *plan)); !status) {
-    return status.error();
+  if (Status status = write_sweep(sweep, *plan, options.folder); !status) return status.error();
+  std::unique_ptr<FlightExecutor> executor;
+  if (options.open_executor) {
+    Result<std::unique_ptr<FlightExecutor>> opened = options.open_executor();
+    if (!opened) return opened.error();
+    executor = std::move(*opened);
+  } else {
+    executor = std::make_unique<FlightProcesses>(options.program, options.flight_options);
   }
-  return SweepFlyer(sweep, options, std::move(*plan), std::move(*results)).fly();
+  return SweepFlyer(sweep, options, std::move(executor), std::move(*plan), std::move(*results))
+      .fly();
 }
 
 Result<FlownSweep> read_sweep(const Sweep& sweep, const fs::path& folder) {

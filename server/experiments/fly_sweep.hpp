@@ -5,27 +5,29 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
+#include "server/experiments/flight_executor.hpp"
 #include "server/experiments/sweep_plan.hpp"
+#include "server/experiments/sweep_progress.hpp"
 #include "server/experiments/sweep_results.hpp"
+#include "server/runs/run_memory.hpp"
 
 namespace overfly::server::experiments {
 
-struct SweepProgress {
-  std::size_t passed = 0;  ///< flights that are over or need not be flown
-  std::size_t most = 0;    ///< flights at most
-  std::size_t flown = 0;   ///< in this call
-  std::size_t failed = 0;  ///< in this call
-  double left_s = 0.0;     ///< estimate for the rest; 0 before the first flight is over
-  double spent_s = 0.0;    ///< by the flights of this call, one after the other
-};
-
 struct SweepOptions {
-  std::filesystem::path folder;   ///< created if absent
-  std::filesystem::path program;  ///< this program, which flies single scenarios
-  std::size_t jobs = 1;           ///< flights at the same time, if the memory suffices
+  std::filesystem::path folder;             ///< created if absent
+  std::filesystem::path program;            ///< this program, which flies single scenarios
+  std::vector<std::string> flight_options;  ///< further options of `overfly run`
+  std::size_t jobs = 1;  ///< flights given to the executor at the same time, if the memory suffices
+  /// Makes what flies the flights, when the folder is locked. Empty: processes of this machine.
+  std::function<Result<std::unique_ptr<FlightExecutor>>()> open_executor;
+  /// Memory for one more flight, for as long as the result lives; null while there is not enough.
+  /// Empty: four fifths of the machine's memory are this sweep's own.
+  std::function<std::shared_ptr<const void>(const RunMemory&)> hold_memory;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const SweepProgress&)> progress;
   std::function<void(const std::string&)> warn;
@@ -45,6 +47,20 @@ struct FlownSweep {
 /// as failed; the next call tries it again. Errors: as SweepPlan::make; kConflict if another
 /// process works on the folder; kUnsupported if a flight needs more memory than there is; kIo.
 [[nodiscard]] Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options);
+
+/// As fly_sweep, but flies only some of the sweep's cells.
+[[nodiscard]] Result<FlownSweep> fly_cells(const Sweep& sweep,
+                                           std::vector<SweepCell> cells,
+                                           const SweepOptions& options);
+
+/// Makes a folder a sweep without results, or changes what the next call flies into it.
+/// Errors: kIo.
+[[nodiscard]] Status write_sweep(const Sweep& sweep,
+                                 const SweepPlan& plan,
+                                 const std::filesystem::path& folder);
+/// The sweep's document in a folder; its `scenario` is absolute.
+/// Errors: as read_json; kUnreadable if it is no object.
+[[nodiscard]] Result<nlohmann::json> read_sweep_document(const std::filesystem::path& folder);
 
 /// Reads the results in a folder without flying.
 /// Errors: as fly_sweep.

@@ -27,10 +27,17 @@ std::string stamp_text(const FileStamp& stamp) {
   return std::to_string(stamp.size_bytes) + " bytes of " + std::to_string(stamp.modified_ns);
 }
 
-void add_named_files(const Json& value, const fs::path& folder, bool follow, std::string& text);
+/// The files that may be read, and the text that they are added to.
+struct NamedFiles {
+  SourcePolicy sources;
+  std::string text;
+};
 
-void add_file(const fs::path& file, bool follow, std::string& text) {
-  if (!check_regular_file(file).ok()) return;
+void add_named_files(const Json& value, const fs::path& folder, bool follow, NamedFiles& files);
+
+void add_file(const fs::path& file, bool follow, NamedFiles& files) {
+  if (!files.sources.check_place(file, "file") || !check_regular_file(file).ok()) return;
+  std::string& text = files.text;
   text += "\n" + file.string() + " ";
   const Result<std::string> content = read_file_text(file, kMostHashedBytes);
   if (!content) {
@@ -40,21 +47,21 @@ void add_file(const fs::path& file, bool follow, std::string& text) {
   text += digest_of(*content);
   if (!follow || file.extension() != ".json") return;
   const auto document = json_from_outside<Json>(*content, file.string());
-  if (document) add_named_files(*document, file.parent_path(), false, text);
+  if (document) add_named_files(*document, file.parent_path(), false, files);
 }
 
 /// @param follow  whether the files named by JSON files count too
 // NOLINTNEXTLINE(misc-no-recursion): documents from outside are at most kMaxJsonDepth deep
-void add_named_files(const Json& value, const fs::path& folder, bool follow, std::string& text) {
+void add_named_files(const Json& value, const fs::path& folder, bool follow, NamedFiles& files) {
   constexpr std::size_t kLongestName = 4096;
   if (value.is_structured()) {
-    for (const Json& child : value) add_named_files(child, folder, follow, text);
+    for (const Json& child : value) add_named_files(child, folder, follow, files);
     return;
   }
   if (!value.is_string()) return;
   const auto& name = value.get_ref<const std::string&>();
   if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) return;
-  add_file((folder / name).lexically_normal(), follow, text);
+  add_file((folder / name).lexically_normal(), follow, files);
 }
 
 /// A build of changed sources is known by its executable only.
@@ -72,15 +79,15 @@ std::string flight_key(const Scenario& scenario) {
   for (const char* name : {"$schema", "name", "title", "description", "estimators"}) {
     document.erase(name);
   }
-  std::string text = program_text() + "\n" + document.dump();
-  add_named_files(document, "/", true, text);
-  return digest_of(text);
+  NamedFiles files{scenario.sources, program_text() + "\n" + document.dump()};
+  add_named_files(document, "/", true, files);
+  return digest_of(files.text);
 }
 
 std::string result_key(const std::string& flight, const Json& estimator) {
-  std::string text = flight + "\n" + estimator.dump();
-  add_named_files(estimator, "/", false, text);
-  return digest_of(text);
+  NamedFiles files{{}, flight + "\n" + estimator.dump()};
+  add_named_files(estimator, "/", false, files);
+  return digest_of(files.text);
 }
 
 }  // namespace overfly::server::experiments

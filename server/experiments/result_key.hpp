@@ -9,8 +9,8 @@
 namespace overfly::server::experiments {
 
 /// Digest of a scenario without its names, its texts and its estimators, of the files that it names
-/// (those up to 1 MiB by content, larger ones by size and modification time; also the files named
-/// by a world's manifest), and of the program.
+/// and may name (those up to 1 MiB by content, larger ones by size and modification time; also the
+/// files named by a world's manifest), and of the program.
 [[nodiscard]] std::string flight_key(const Scenario& scenario);
 
 /// Digest of a flight and of one of its estimators, as the scenario's document describes it, with

@@ -110,7 +110,9 @@ double later_s(int repeat, const RepeatRule& rule) {
   return std::floor((turns - std::floor(turns)) * rule.vary_start_s * 1e3) / 1e3;
 }
 
-Result<Sweep> sweep_from(Json document, const fs::path& folder) {
+}  // namespace
+
+Result<Sweep> resolve_sweep(Json document, const fs::path& folder) {
   std::string messages;
   for (const SchemaViolation& violation : sweep_schema().violations(document)) {
     messages += (messages.empty() ? "" : "\n") + violation.text;
@@ -141,13 +143,11 @@ Result<Sweep> sweep_from(Json document, const fs::path& folder) {
   return sweep;
 }
 
-}  // namespace
-
 Result<Sweep> load_sweep(const fs::path& file) {
   Result<Json> document = read_json(file, kMaxSweepBytes);
   if (!document) return document.error();
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
-  Result<Sweep> sweep = sweep_from(std::move(*document), folder);
+  Result<Sweep> sweep = resolve_sweep(std::move(*document), folder);
   if (!sweep) return sweep.error().in(file.string());
   return sweep;
 }
@@ -158,7 +158,7 @@ Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repe
   const auto in_cell = [&](const Error& error) {
     return cell.values.empty() ? error : error.in(cell_text(cell.values));
   };
-  Result<Scenario> scenario = load_scenario(sweep.scenario_file, changes);
+  Result<Scenario> scenario = load_scenario(sweep.scenario_file, changes, sweep.sources);
   if (!scenario) return in_cell(scenario.error());
   if (repeat > 0) {
     const auto added = static_cast<std::uint64_t>(repeat);
@@ -175,10 +175,13 @@ Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repe
       const double start_s = s_from_ns(scenario->start_ns) + later_s(repeat, sweep.repeats);
       changes.push_back({"start_s", start_s});
     }
-    scenario = load_scenario(sweep.scenario_file, changes);
+    scenario = load_scenario(sweep.scenario_file, changes, sweep.sources);
     if (!scenario) return in_cell(scenario.error());
   }
+  scenario->sources = sweep.sources;
   if (Status status = check_scenario(*scenario); !status) return in_cell(status.error());
+  if (!sweep.check) return scenario;
+  if (Status status = sweep.check(*scenario); !status) return in_cell(status.error());
   return scenario;
 }
 

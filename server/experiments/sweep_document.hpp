@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -56,6 +57,9 @@ struct Sweep {
   double timeout_s = 3600.0;
   int retries = 1;
   nlohmann::json document;  ///< as read, with defaults
+  SourcePolicy sources;     ///< files that its scenarios may name
+  /// Further check of every flight's scenario; may be empty.
+  std::function<Status(const Scenario&)> check;
 };
 
 /// One point of the axes.
@@ -71,6 +75,10 @@ struct SweepCell {
 /// limit", one a line, with the file.
 [[nodiscard]] Result<Sweep> load_sweep(const std::filesystem::path& file);
 
+/// As load_sweep, for a document in memory; `folder` is that of a relative `scenario`.
+[[nodiscard]] Result<Sweep> resolve_sweep(nlohmann::json document,
+                                          const std::filesystem::path& folder);
+
 /// The cells in the order of the axes, the last axis changing fastest, without those to be skipped.
 /// Errors: kInvalidArgument for more than kMaxCells, a range without step in a grid, a `skip` with
 /// an unknown axis, and if no cell is left.
@@ -79,8 +87,8 @@ struct SweepCell {
 /// The scenario of one flight: the seed increases by one with each repeat. With
 /// repeats.vary_start_s the start of repeat k is later by the fractional part of k times the golden
 /// ratio, times that length: a sequence that is spread evenly however many repeats are flown.
-/// Errors: as load_scenario and check_scenario; kInvalidArgument for repeats.vary_world with
-/// another world than the built-in one. Each names the cell.
+/// Errors: as load_scenario, check_scenario and Sweep::check; kInvalidArgument for
+/// repeats.vary_world with another world than the built-in one. Each names the cell.
 [[nodiscard]] Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repeat);
 
 /// "flight.course.height_agl_m = 50, seed = 2"

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/measure/sha256.hpp"
 #include "evaluation/statistics/wilson.hpp"
 #include "server/experiments/result_key.hpp"
@@ -42,12 +43,15 @@ bool has_enough(const RepeatRule& rule, int successes, int flights) {
   return evaluation::wilson_interval(successes, flights).half_width() <= *rule.half_width;
 }
 
-Result<SweepPlan> SweepPlan::make(const Sweep& sweep, std::vector<SweepCell> cells) {
+Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
+                                  std::vector<SweepCell> cells,
+                                  const std::atomic<bool>* cancel) {
   constexpr int kMostMessages = 10;
   SweepPlan plan(sweep, std::move(cells));
   std::string messages;
   int faults = 0;
   for (const SweepCell& cell : plan.cells_) {
+    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const Result<Scenario> scenario = scenario_of(sweep, cell, 0);
     if (!scenario) {
       if (++faults <= kMostMessages)

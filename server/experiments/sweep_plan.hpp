@@ -1,6 +1,7 @@
 // Which flights of a sweep are due.
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,8 +29,10 @@ struct DueFlight {
 class SweepPlan {
  public:
   /// Resolves the first repeat of every cell.
-  /// Errors: as scenario_of, for up to ten cells, one a line.
-  [[nodiscard]] static Result<SweepPlan> make(const Sweep& sweep, std::vector<SweepCell> cells);
+  /// Errors: as scenario_of, for up to ten cells, one a line; kCancelled.
+  [[nodiscard]] static Result<SweepPlan> make(const Sweep& sweep,
+                                              std::vector<SweepCell> cells,
+                                              const std::atomic<bool>* cancel = nullptr);
 
   /// The next flight that is due; empty if none is, or none before those flying are over.
   /// Errors: as scenario_of.

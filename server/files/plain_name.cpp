@@ -13,4 +13,10 @@ bool is_plain_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
+bool is_given_name(const std::string& name) {
+  constexpr std::size_t kLongest = 64;
+  return is_plain_name(name) && name.size() <= kLongest && name.find('.') == std::string::npos &&
+         name.front() != '_' && name.front() != '-';
+}
+
 }  // namespace overfly::server

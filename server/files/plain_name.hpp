@@ -9,4 +9,11 @@ namespace overfly::server {
 /// with `.`; at most 200 characters.
 [[nodiscard]] bool is_plain_name(const std::string& name);
 
+/// True for a name that a client may give to what it makes: 1 to 64 letters, digits, `_` or `-`,
+/// beginning with a letter or digit. Also a scenario's name (scenario.schema.json).
+[[nodiscard]] bool is_given_name(const std::string& name);
+/// "must be 1 to 64 letters, ..."
+inline constexpr const char* kGivenNameRule =
+    "must be 1 to 64 letters, digits, '_' or '-', beginning with a letter or digit";
+
 }  // namespace overfly::server

@@ -59,6 +59,7 @@ Server::~Server() {
     impl_->context->gate.close();
     impl_->context->readers.stop();
     impl_->context->drawers.stop();
+    impl_->context->sweeps.stop();
   }
   impl_->workers.stop();
   impl_->connections.stop();
@@ -92,6 +93,10 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_progress_routes(&context->router, progress);
   add_log_routes(&context->router, {&context->logs, readers, progress});
   add_trajectory_routes(&context->router, &context->trajectories, readers);
+  add_difference_routes(&context->router, &runs, readers);
+  const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers};
+  add_sweep_routes(&context->router, sweeps);
+  add_sweep_start_routes(&context->router, sweeps);
   add_calibration_session_routes(&context->router, &context->calibrations);
   add_calibration_routes(&context->router, &context->calibrations);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {

@@ -11,6 +11,7 @@
 
 #include "core/barrier.hpp"
 #include "server/calibration/session/calibration_desk.hpp"
+#include "server/experiments/service/sweep_service.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/maps/map_service.hpp"
 #include "server/net/http/allowed_hosts.hpp"
@@ -67,6 +68,7 @@ struct ServerContext {
             server_options.limits.uploads),
         trajectories(logs, [this](const std::string& id) { return runs.folder(id); }),
         calibrations(calibration_options()),
+        sweeps(run_manager, sweep_options()),
         maps(run_manager),
         connections(server_options.limits.connections) {}
 
@@ -81,6 +83,16 @@ struct ServerContext {
     if (keeps) desk.store = options.uploads_folder / "calibrations";
     desk.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
     return desk;
+  }
+
+  [[nodiscard]] server::experiments::SweepServiceOptions sweep_options() {
+    server::experiments::SweepServiceOptions sweep;
+    sweep.program = options.program;
+    sweep.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
+    sweep.log = [this](const std::string& level, const std::string& text) {
+      log(level.c_str(), text);
+    };
+    return sweep;
   }
 
   /// Never throws, since it is called from exception handlers.
@@ -121,6 +133,7 @@ struct ServerContext {
   server::LogLibrary logs;
   server::TrajectoryLibrary trajectories;
   server::CalibrationDesk calibrations;
+  server::experiments::SweepService sweeps;
   /// Reads flight logs, which can take minutes, without keeping other requests waiting.
   ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
   server::MapService maps;

@@ -10,6 +10,7 @@
 #include "core/camera/camera_model.hpp"
 #include "core/earth/geodesy.hpp"
 #include "core/motion/pose.hpp"
+#include "evaluation/evaluation.hpp"
 
 namespace overfly::server {
 
@@ -23,6 +24,15 @@ enum class RunStatus {
   kUnreadable,   ///< its folder is invalid; RunInfo::problem gives the reason
 };
 [[nodiscard]] const char* to_string(RunStatus status);  ///< "queued", "running", ...
+
+/// How one estimator performed.
+struct EstimatorResult {
+  std::string estimator;  ///< name
+  evaluation::Outcome outcome = evaluation::Outcome::kNotInitialised;
+  /// Of alignment init_scale; empty if the estimate could not be aligned.
+  std::optional<double> position_rmse_m;
+  std::optional<double> position_rmse_percent;  ///< of the path; likewise
+};
 
 /// The fields shown in a list of runs.
 struct RunInfo {
@@ -48,6 +58,9 @@ struct RunInfo {
   std::vector<std::string> cameras;  ///< names, the main camera first
   /// The imagery, not the camera, limits the result: the median is below 0.5 texels per pixel.
   bool texture_limited = false;
+  std::vector<EstimatorResult> results;  ///< by name; empty until the run is scored
+  std::vector<std::string> tags;         ///< written by people; see RunNotes
+  std::string note;                      ///< likewise
   /// The step in progress before the first frame ("making the built-in world: 30 %"); else empty.
   /// Known to this process only; not stored in a file.
   std::string notice;

@@ -19,9 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Maximum size of a file that is read for a list of runs.
-constexpr std::uint64_t kMostListedBytes = std::uint64_t{16} << 20U;
-
 /// Number of frames in a file of rows, from the number in its last complete row: the cost does not
 /// depend on the file's length.
 std::int64_t frames_written(const fs::path& file) {

@@ -3,8 +3,9 @@
 #include <filesystem>
 
 #include "core/text/number_text.hpp"
+#include "server/record/comparison/compared_document.hpp"
+#include "server/record/comparison/differences.hpp"
 #include "server/record/run_manifest.hpp"
-#include "server/report/differences.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/markup.hpp"
 #include "server/report/run/words.hpp"
@@ -195,43 +196,7 @@ Table origin_table(const ReportRun& run) {
   return origin;
 }
 
-/// Those of the scenario: the estimators told theirs, with defaults, to the manifest.
-void drop_parameters(Json& scenario) {
-  const auto estimators = scenario.find("estimators");
-  if (estimators == scenario.end() || !estimators->is_array()) return;
-  for (Json& estimator : *estimators) {
-    if (estimator.is_object()) estimator.erase("parameters");
-  }
-}
-
 }  // namespace
-
-Json compared_document(const ReportRun& run) {
-  Json manifest = json_from(run.manifest);
-  // What follows from the run, not what it was made of; the scenario has the fields of the cameras.
-  for (const char* field : {"format_version",
-                            "status",
-                            "error",
-                            "frames",
-                            "frames_total",
-                            "texture_limited",
-                            "camera",
-                            "cameras",
-                            "epoch_utc_ns",
-                            "duration_ns",
-                            "estimators"}) {
-    manifest.erase(field);
-  }
-  Json parameters = Json::object();
-  for (const RunManifest::Estimator& estimator : run.manifest.estimators) {
-    parameters[estimator.name] = estimator.parameters.value_or(RunManifest::Parameters{});
-  }
-  Json scenario = run.scenario;
-  if (scenario.is_object()) drop_parameters(scenario);
-  return {{"scenario", std::move(scenario)},
-          {"parameters", std::move(parameters)},
-          {"manifest", std::move(manifest)}};
-}
 
 std::string differences_section(const ReportContent& content) {
   if (content.runs.size() < 2) return "";
@@ -241,7 +206,7 @@ std::string differences_section(const ReportContent& content) {
   differing.fields = true;
   differing.head = {{"field"}};
   for (const ReportRun& run : content.runs) {
-    documents.push_back(compared_document(run));
+    documents.push_back(compared_document(run.manifest, run.scenario));
     differing.head.push_back({run.label});
   }
   const Differences differences = differences_between(documents);

@@ -39,12 +39,13 @@ MemoryBudget budget_of(const RunManagerOptions& options) {
 
 ManagedRuns::ManagedRuns(RunManagerOptions manager_options)
     : options(std::move(manager_options)),
+      places(options.runs_folder, options.sweeps_folder),
       library({options.scenarios_folder,
                options.saved_scenarios_folder,
                options.allow_commands,
                [this] { return sources(); }}),
       index(options.runs_folder),
-      shelf(options.runs_folder),
+      shelf(places),
       budget_(budget_of(options)) {}
 
 ManagedRuns::~ManagedRuns() {
@@ -70,8 +71,37 @@ DataFolders ManagedRuns::data_folders() const {
   if (!options.data_folders) return data;
   data.folders.insert(
       data.folders.end(), options.data_folders->begin(), options.data_folders->end());
-  data.sources = SourcePolicy::inside(data.folders, {options.runs_folder});
+  data.closed = {options.runs_folder};
+  if (!options.sweeps_folder.empty()) data.closed.push_back(options.sweeps_folder);
+  data.sources = SourcePolicy::inside(data.folders, data.closed);
   return data;
+}
+
+Status ManagedRuns::check_memory(const Scenario& scenario) const { return budget_.check(scenario); }
+
+std::shared_ptr<const void> ManagedRuns::hold_memory(const RunMemory& memory) {
+  const std::lock_guard lock(mutex_);
+  RunMemory together = memory;
+  int flying = 0;
+  for (const auto& [id, run] : runs_) {
+    if (!run->flies) continue;
+    ++flying;
+    together += run->memory;
+  }
+  // A run that waits although a thread is free for it waits for memory.
+  if (!queue_.empty() && flying < options.max_parallel_runs) return nullptr;
+  for (const RunMemory& other : held_) together += other;
+  const bool only_one = flying == 0 && held_.empty();
+  if (!only_one && !budget_.holds(together)) return nullptr;
+  held_.push_back(memory);
+  const auto place = std::prev(held_.end());
+  return {&*place, [this, place](const void*) {
+            {
+              const std::lock_guard releasing(mutex_);
+              held_.erase(place);
+            }
+            wake_.notify_all();
+          }};
 }
 
 Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
@@ -129,7 +159,9 @@ RunList ManagedRuns::list() {
       own.push_back(std::make_shared<const RunInfo>(info_of(run)));
       skip.insert(run.id);
     };
-    for (const auto& [id, run] : runs_) add(*run);
+    for (const auto& [id, run] : runs_) {
+      if (!is_stored(*run)) add(*run);
+    }
     for (const auto& run : unflown_) add(*run);
   }
   const auto first = [](const auto& a, const auto& b) { return newer(*a, *b); };
@@ -157,9 +189,18 @@ std::shared_ptr<RunTimeline> ManagedRuns::known_timeline(const std::string& id) 
 
 std::optional<RunInfo> ManagedRuns::known_info(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  if (const auto run = runs_.find(id); run != runs_.end()) return info_of(*run->second);
+  if (const auto run = runs_.find(id); run != runs_.end()) {
+    if (is_stored(*run->second)) return std::nullopt;
+    return info_of(*run->second);
+  }
   const auto timeline = timeline_of(id);
   return timeline ? std::optional<RunInfo>(timeline->info()) : std::nullopt;
+}
+
+bool ManagedRuns::is_stored(const ManagedRun& run) const {
+  std::error_code ignored;
+  return !server::is_live(*run.timeline) &&
+         std::filesystem::exists(manifest_file(options.runs_folder / run.id), ignored);
 }
 
 RunInfo ManagedRuns::info_of(const ManagedRun& run) const {
@@ -241,7 +282,7 @@ Result<std::shared_ptr<RunTimeline>> ManagedRuns::shelved_timeline(const std::st
 }
 
 void ManagedRuns::tell_world_change(const std::string& id, const OpenedWorld& opened) {
-  index.set_world_change(id, world_change(options.runs_folder / id, opened));
+  index.set_world_change(id, world_change(places.of(id), opened));
   // Its viewers are notified through its timeline.
   if (!known_timeline(id)) (void)shelved_timeline(id);
 }

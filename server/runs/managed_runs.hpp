@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include "server/runs/run_manager_options.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/runs/run_pace.hpp"
+#include "server/runs/run_places.hpp"
 #include "server/runs/scenario_library.hpp"
 #include "server/runs/timeline_shelf.hpp"
 #include "server/scenario/document/scenario_list.hpp"
@@ -59,6 +61,9 @@ class ManagedRuns {
   /// Sources that scenarios may name now: the declared folders follow the scenario files.
   [[nodiscard]] SourcePolicy sources() const;
   [[nodiscard]] DataFolders data_folders() const;
+  /// As RunManager.
+  [[nodiscard]] Status check_memory(const Scenario& scenario) const;
+  [[nodiscard]] std::shared_ptr<const void> hold_memory(const RunMemory& memory);
   /// Errors: as RunManager::start, for a valid scenario.
   Result<RunInfo> enqueue(Scenario scenario,
                           const std::string& idempotency_key,
@@ -86,6 +91,7 @@ class ManagedRuns {
   void forget(const std::string& id);
 
   const RunManagerOptions options;
+  const RunPlaces places;
   ScenarioLibrary library;
   WorldCache worlds;
   PictureRate picture_rate;
@@ -104,6 +110,8 @@ class ManagedRuns {
   [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key);
   [[nodiscard]] std::shared_ptr<RunTimeline> timeline_of(const std::string& id) const;
   [[nodiscard]] RunInfo info_of(const ManagedRun& run) const;
+  /// Whether it is over and its folder has all of its data.
+  [[nodiscard]] bool is_stored(const ManagedRun& run) const;
   void note_paces();
   /// Whether the first run in the queue fits in memory next to the flying ones.
   [[nodiscard]] bool next_fits() const;
@@ -115,6 +123,7 @@ class ManagedRuns {
   bool stopping_ = false;
   std::map<std::string, std::shared_ptr<ManagedRun>> runs_;  ///< queued or flying
   std::deque<std::shared_ptr<ManagedRun>> queue_;
+  std::list<RunMemory> held_;                        ///< by hold_memory
   std::deque<std::shared_ptr<ManagedRun>> unflown_;  ///< newest first
   IdempotencyKeys keys_;
   std::vector<std::thread> threads_;

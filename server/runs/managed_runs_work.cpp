@@ -52,6 +52,10 @@ bool ManagedRuns::next_fits() const {
     only_one = false;
     together += run->memory;
   }
+  for (const RunMemory& other : held_) {
+    only_one = false;
+    together += other;
+  }
   // A run that does not fit without others was rejected when it was requested.
   return only_one || budget_.holds(together);
 }

@@ -11,7 +11,7 @@
 
 #include "server/files/plain_name.hpp"
 #include "server/record/run_folder.hpp"
-#include "server/record/run_info_file.hpp"
+#include "server/runs/listed_run.hpp"
 
 namespace overfly::server {
 namespace {
@@ -66,19 +66,22 @@ bool RunIndex::look_for_folders(int descriptor) {
 
 bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   const FileStamp manifest = FileStamp::of(descriptor, id + "/manifest.json");
-  if (entry.settled && manifest == entry.manifest) return false;
+  const FileStamp notes = FileStamp::of(descriptor, id + "/notes.json");
+  if (entry.settled && manifest == entry.manifest && notes == entry.notes) return false;
   const bool had_none = entry.info == nullptr;
   entry.manifest = manifest;
+  entry.notes = notes;
   entry.info = nullptr;
   if (manifest.exists) {
-    if (Result<RunInfo> info = read_run_info(folder_ / id); info) {
+    if (Result<RunInfo> info = read_listed_run(folder_ / id); info) {
       info->world_change = entry.world_change;
       entry.info = std::make_shared<const RunInfo>(std::move(*info));
     }
   }
   // A run that another process flies changes without a change of its manifest.
   const bool flies = entry.info && entry.info->status == RunStatus::kRunning;
-  entry.settled = manifest.settled(utc_now_ns()) && !flies;
+  const std::int64_t now_ns = utc_now_ns();
+  entry.settled = manifest.settled(now_ns) && (!notes.exists || notes.settled(now_ns)) && !flies;
   return !had_none || entry.info != nullptr;
 }
 

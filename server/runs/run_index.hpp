@@ -22,8 +22,9 @@ using RunList = std::vector<std::shared_ptr<const RunInfo>>;
 /// Newest first: by time of creation, then by id.
 [[nodiscard]] bool newer(const RunInfo& a, const RunInfo& b);
 
-/// Thread-safe. Every call checks whether the folder's entries or their manifests have changed and
-/// reads only the changed ones. Changes by other programs are thus seen at the next call.
+/// Thread-safe. Every call checks whether the folder's entries, their manifests or their notes have
+/// changed and reads only the changed ones. Changes by other programs are thus seen at the next
+/// call.
 class RunIndex {
  public:
   explicit RunIndex(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -39,7 +40,8 @@ class RunIndex {
  private:
   struct Entry {
     FileStamp manifest;
-    /// Read after the manifest's last change; only a change of the manifest can change the run.
+    FileStamp notes;
+    /// Read after the last change of these files; only a change of them can change the run.
     bool settled = false;
     std::shared_ptr<const RunInfo> info;  ///< null if there is no manifest
     std::string world_change;

@@ -3,7 +3,11 @@
 #include <utility>
 
 #include "server/files/plain_name.hpp"
+#include "server/record/comparison/compared_document.hpp"
 #include "server/record/run_info.hpp"
+#include "server/record/run_info_file.hpp"
+#include "server/record/run_manifest.hpp"
+#include "server/runs/listed_run.hpp"
 #include "server/runs/managed_runs.hpp"
 #include "server/runs/run_removal.hpp"
 #include "server/scenario/document/estimators/estimator_reach.hpp"
@@ -74,6 +78,14 @@ Status RunManager::check_link(const Scenario& scenario) const {
   return server::check_link(scenario, impl_->options.allowed_links);
 }
 
+Status RunManager::check_memory(const Scenario& scenario) const {
+  return impl_->check_memory(scenario);
+}
+
+std::shared_ptr<const void> RunManager::hold_memory(const RunMemory& memory) {
+  return impl_->hold_memory(memory);
+}
+
 ScenarioLibrary& RunManager::library() { return impl_->library; }
 
 Result<WorldExtent> RunManager::world_extent(const std::string& scenario,
@@ -99,7 +111,12 @@ RunList RunManager::runs() const { return impl_->list(); }
 
 Result<RunInfo> RunManager::run(const std::string& id) const {
   if (std::optional<RunInfo> known = impl_->known_info(id)) return *known;
-  return impl_->index.run(id);
+  if (!is_plain_name(id) || !impl_->places.in_sweep(id)) return impl_->index.run(id);
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  Result<RunInfo> info = read_listed_run(*place);
+  if (info) info->id = id;
+  return info;
 }
 
 Result<std::shared_ptr<RunTimeline>> RunManager::timeline(const std::string& id) {
@@ -125,14 +142,41 @@ Status RunManager::remove(const std::string& id) {
   if (impl_->forget_unflown(id)) return {};
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
+  if (impl_->places.in_sweep(id)) {
+    return Error{ErrorCode::kConflict, "run \"" + id + "\" belongs to a sweep"};
+  }
   if (Status status = remove_run_folder(*place); !status) return status;
   impl_->forget(id);
   return {};
 }
 
+Status RunManager::set_notes(const std::string& id, const RunNotes& notes) {
+  if (Status status = check_notes(notes); !status) return status;
+  if (impl_->is_live(id)) {
+    return Error{ErrorCode::kConflict, "run \"" + id + "\" has not ended"};
+  }
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  return write_notes(*place, notes);
+}
+
+Result<nlohmann::json> RunManager::compared_document_of(const std::string& id) const {
+  const Result<fs::path> place = folder(id);
+  if (!place) return place.error();
+  const Result<ReadManifest> manifest = read_run_manifest(*place, kMostListedBytes);
+  if (!manifest) return manifest.error();
+  // An invalid field has a default, which would be compared in its place.
+  if (std::string problem = manifest->problem(); !problem.empty()) {
+    return Error{ErrorCode::kUnreadable, std::move(problem)};
+  }
+  Result<nlohmann::json> scenario = document_of(id);
+  if (!scenario) return scenario.error();
+  return compared_document(manifest->values, std::move(*scenario));
+}
+
 Result<fs::path> RunManager::folder(const std::string& id) const {
   if (!is_plain_name(id)) return no_such_run(id);
-  fs::path place = impl_->options.runs_folder / id;
+  fs::path place = impl_->places.of(id);
   std::error_code ignored;
   if (!fs::exists(manifest_file(place), ignored)) return no_such_run(id);
   return place;
@@ -169,6 +213,8 @@ Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
   impl_->tell_world_change(id, **opened);
   return bare_world(*opened);
 }
+
+const fs::path& RunManager::sweeps_folder() const { return impl_->options.sweeps_folder; }
 
 PictureRate& RunManager::picture_rate() { return impl_->picture_rate; }
 

@@ -13,6 +13,8 @@
 #include "server/record/run_info.hpp"
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
+#include "server/runs/run_memory.hpp"
+#include "server/runs/run_notes.hpp"
 #include "server/runs/scenario_library.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
@@ -63,6 +65,13 @@ class RunManager {
                                       StartReport* report = nullptr);
   /// Whether the server may open the link of a live flight. Errors: as server::check_link.
   [[nodiscard]] Status check_link(const Scenario& scenario) const;
+  /// Whether a flight fits in the server's memory if it is the only one.
+  /// Errors: as MemoryBudget::check.
+  [[nodiscard]] Status check_memory(const Scenario& scenario) const;
+  /// Reserves memory for a flight in another process, in addition to the runs, as long as the
+  /// result lives. Null while there is not enough, or while a run waits for memory. @pre
+  /// check_memory was ok
+  [[nodiscard]] std::shared_ptr<const void> hold_memory(const RunMemory& memory);
   /// Newest first. Answers from memory; reads only folders that have changed.
   [[nodiscard]] RunList runs() const;
   /// One run. Errors: kNotFound.
@@ -72,8 +81,15 @@ class RunManager {
   /// Errors: kNotFound; kConflict if it is not running or queued.
   Status cancel(const std::string& id);
   /// Deletes the folder. If several threads call it at the same time, one succeeds.
-  /// Errors: kNotFound; kConflict while it runs, and while another process uses it.
+  /// Errors: kNotFound; kConflict while it runs, while another process uses it, and for a run of a
+  /// sweep.
   Status remove(const std::string& id);
+  /// Replaces what people wrote about a run.
+  /// Errors: as write_notes; kNotFound; kConflict before the run has ended.
+  Status set_notes(const std::string& id, const RunNotes& notes);
+  /// What a run is compared by with others, as compared_document.
+  /// Errors: kNotFound; as read_run_manifest, document_of; kUnreadable naming an invalid field.
+  [[nodiscard]] Result<nlohmann::json> compared_document_of(const std::string& id) const;
   /// Folder of a run. Errors: kNotFound, also for an id that is not a plain folder name.
   [[nodiscard]] Result<std::filesystem::path> folder(const std::string& id) const;
   /// The resolved document of a run's scenario. Errors: kNotFound; as load_scenario.
@@ -86,6 +102,8 @@ class RunManager {
   /// Errors: kNotFound; as open_scenario_world.
   [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(
       const std::string& id, const std::function<bool()>& cancelled = {});
+  /// RunManagerOptions::sweeps_folder
+  [[nodiscard]] const std::filesystem::path& sweeps_folder() const;
   [[nodiscard]] const RendererFactory& renderer_factory() const;
   /// Rate limit of pictures for viewers during flights.
   [[nodiscard]] PictureRate& picture_rate();

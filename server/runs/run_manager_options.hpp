@@ -18,6 +18,8 @@ struct RunManagerOptions {
   /// Where scenarios of clients are kept, created with the first one; empty = none are. Other
   /// folders that they name do not become data folders.
   std::filesystem::path saved_scenarios_folder;
+  /// Folders of sweeps, whose runs are shown under the ids SWEEP.RUN; empty = none are.
+  std::filesystem::path sweeps_folder;
   RendererFactory renderer_factory;
   int max_parallel_runs = 1;           ///< further runs wait in a queue
   std::size_t max_waiting_runs = 100;  ///< further runs are refused
@@ -28,13 +30,14 @@ struct RunManagerOptions {
   /// Links to live vehicles that may be opened, as LinkAddress::text.
   std::vector<std::string> allowed_links;
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
-  /// never the runs folder. Without a value any regular file may be named.
+  /// never the folders of runs and sweeps. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
 };
 
 /// Folders whose files scenarios may name, and which files of the machine these are.
 struct DataFolders {
   std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> closed;  ///< in them, but may not be named
   SourcePolicy sources;
 };
 

@@ -15,13 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// As the schema's plain_name, so that the file's name can be the scenario's.
-bool is_scenario_name(const std::string& name) {
-  constexpr std::size_t kLongest = 64;
-  return is_plain_name(name) && name.size() <= kLongest && name.find('.') == std::string::npos &&
-         name.front() != '_' && name.front() != '-';
-}
-
 bool is_file(const fs::path& file) {
   std::error_code ignored;
   return fs::is_regular_file(file, ignored);
@@ -50,6 +43,12 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
     all.push_back(std::move(entry));
   }
   return all;
+}
+
+Result<fs::path> ScenarioLibrary::file(const std::string& name) const {
+  Result<Found> found = find(name);
+  if (!found) return found.error();
+  return std::move(found->file);
 }
 
 Result<Json> ScenarioLibrary::document(const std::string& name) const {
@@ -83,14 +82,16 @@ Result<Scenario> ScenarioLibrary::read(const Json& document) const {
 }
 
 /// Compares with all of the owner's scenarios together.
-Status ScenarioLibrary::check_owned(const Scenario& scenario) const {
-  if (options_.allow_commands) return {};
+std::function<Status(const Scenario&)> ScenarioLibrary::reach_check() const {
+  if (options_.allow_commands) return [](const Scenario&) { return Status(); };
   std::vector<Scenario> trusted;
   for (const ScenarioEntry& entry : list_scenarios(options_.folder, options_.sources())) {
     Result<Scenario> owned = load_scenario(entry.file, {}, options_.sources());
     if (owned) trusted.push_back(std::move(*owned));
   }
-  return server::check_reach(scenario, trusted);
+  return [trusted = std::move(trusted)](const Scenario& scenario) {
+    return server::check_reach(scenario, trusted);
+  };
 }
 
 Status ScenarioLibrary::check_reach(const std::string& name,
@@ -101,7 +102,7 @@ Status ScenarioLibrary::check_reach(const std::string& name,
   const SourcePolicy sources = options_.sources();
   const Result<Scenario> wanted = load_scenario(found->file, overrides, sources);
   if (!wanted) return {};
-  if (found->saved) return check_owned(*wanted);
+  if (found->saved) return reach_check()(*wanted);
   // If the file itself is invalid and only the overrides make it valid, nothing in it is trusted.
   const Result<Scenario> trusted = load_scenario(found->file, {}, sources);
   return server::check_reach(*wanted, {trusted ? *trusted : Scenario()});
@@ -110,7 +111,7 @@ Status ScenarioLibrary::check_reach(const std::string& name,
 Status ScenarioLibrary::check_reach(const Json& document) const {
   const fs::path base = fs::absolute(options_.folder).lexically_normal();
   const Result<Scenario> wanted = resolve_scenario(document, {}, base, options_.sources());
-  return wanted ? check_owned(*wanted) : Status();
+  return wanted ? reach_check()(*wanted) : Status();
 }
 
 Status ScenarioLibrary::check_name(const std::string& name,
@@ -120,11 +121,9 @@ Status ScenarioLibrary::check_name(const std::string& name,
     refusal = SaveRefusal::kOff;
     return Error{ErrorCode::kConflict, "this server keeps no scenarios of its clients"};
   }
-  if (!is_scenario_name(name)) {
+  if (!is_given_name(name)) {
     return Error{ErrorCode::kInvalidArgument,
-                 "name = " + name.substr(0, 100) +
-                     ": must be 1 to 64 letters, digits, '_' or '-', beginning with a letter or "
-                     "digit"};
+                 "name = " + name.substr(0, 100) + ": " + kGivenNameRule};
   }
   if (is_file(options_.folder / (name + ".json"))) {
     refusal = SaveRefusal::kOwned;

@@ -40,6 +40,10 @@ class ScenarioLibrary {
   };
   explicit ScenarioLibrary(Options options) : options_(std::move(options)) {}
 
+  /// Folder of the owner's scenarios.
+  [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
+  /// The file of a scenario. Errors: kNotFound.
+  [[nodiscard]] Result<std::filesystem::path> file(const std::string& name) const;
   /// Whether clients may save scenarios.
   [[nodiscard]] bool saves() const { return !options_.saved.empty(); }
   /// The owner's scenarios by name, then the saved ones by name.
@@ -62,6 +66,9 @@ class ScenarioLibrary {
   /// Checks whether a client may fly or save a document: as for saved scenarios.
   [[nodiscard]] Status check_reach(const nlohmann::json& document) const;
 
+  /// The same check for many scenarios. Reads the owner's scenarios once, now.
+  [[nodiscard]] std::function<Status(const Scenario&)> reach_check() const;
+
   /// Saves a document, resolved and under this name.
   /// @param replace  a saved scenario of this name is replaced
   /// @return true if there was none of this name
@@ -80,7 +87,6 @@ class ScenarioLibrary {
     bool saved = false;
   };
   [[nodiscard]] Result<Found> find(const std::string& name) const;
-  [[nodiscard]] Status check_owned(const Scenario& scenario) const;
   [[nodiscard]] Status check_name(const std::string& name,
                                   bool replace,
                                   SaveRefusal& refusal) const;

@@ -8,24 +8,22 @@
 
 namespace overfly::server {
 
-namespace fs = std::filesystem;
-
 TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
   Entry entry;
   entry.id = id;
-  entry.metrics = FileStamp::of(metrics_file(runs_folder_ / id));
+  entry.metrics = FileStamp::of(metrics_file(places_.of(id)));
   entry.metrics_settled = entry.metrics.settled(utc_now_ns());
   return entry;
 }
 
 bool TimelineShelf::is_fresh(Entry& entry) const {
-  const FileStamp manifest = FileStamp::of(manifest_file(runs_folder_ / entry.id));
+  const FileStamp manifest = FileStamp::of(manifest_file(places_.of(entry.id)));
   if (!manifest.exists || manifest != entry.timeline->manifest_stamp()) return false;
   const Entry now = entry_of(entry.id);
   if (now.metrics == entry.metrics && entry.metrics_settled) return true;
   entry.metrics = now.metrics;
   entry.metrics_settled = now.metrics_settled;
-  Result<RunMetrics> metrics = read_run_metrics(runs_folder_ / entry.id);
+  Result<RunMetrics> metrics = read_run_metrics(places_.of(entry.id));
   // A file that cannot be read is reported when the run is opened again.
   if (!metrics) return false;
   const auto known = entry.timeline->metrics();
@@ -52,8 +50,12 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
   // Read without the lock, since a long run takes time. The stamp is taken first: a change
   // meanwhile is seen at the next call.
   Entry entry = entry_of(id);
-  Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(runs_folder_ / id);
+  Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(places_.of(id));
   if (!opened) return opened.error();
+  if (RunInfo info = (*opened)->info(); info.id != id) {
+    info.id = id;  // of a sweep
+    (*opened)->set_info(info);
+  }
   entry.timeline = *opened;
   // A run that another process still writes is not cached.
   if ((*opened)->info().status != RunStatus::kRunning) keep(std::move(entry));

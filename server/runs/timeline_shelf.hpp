@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -11,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "server/files/file_stamp.hpp"
+#include "server/runs/run_places.hpp"
 #include "server/timeline/run_timeline.hpp"
 
 namespace overfly::server {
@@ -20,8 +20,7 @@ class TimelineShelf {
  public:
   static constexpr std::size_t kMostTimelines = 8;
 
-  explicit TimelineShelf(std::filesystem::path runs_folder)
-      : runs_folder_(std::move(runs_folder)) {}
+  explicit TimelineShelf(RunPlaces places) : places_(std::move(places)) {}
 
   /// A run's timeline; read from its folder if it is not cached or its manifest has changed. If
   /// only the metrics are new, updates the cached timeline. Errors: as RunTimeline::open.
@@ -44,7 +43,7 @@ class TimelineShelf {
   bool is_fresh(Entry& entry) const;
   void keep(Entry entry);
 
-  const std::filesystem::path runs_folder_;
+  const RunPlaces places_;
   std::mutex mutex_;
   std::list<Entry> entries_;  ///< most recently used first
 };

@@ -370,9 +370,9 @@ Result<RunMetrics> run_metrics_from(const Json& document) {
   return guarded_fields([&] { return read_metrics(FileField(document)); });
 }
 
-Result<RunMetrics> read_run_metrics(const fs::path& folder) {
+Result<RunMetrics> read_run_metrics(const fs::path& folder, std::uint64_t max_bytes) {
   const fs::path file = metrics_file(folder);
-  const Result<Json> document = read_json(file);
+  const Result<Json> document = read_json(file, max_bytes);
   if (!document) return document.error();
   Result<RunMetrics> metrics = run_metrics_from(*document);
   if (!metrics) return metrics.error().in(file.string());

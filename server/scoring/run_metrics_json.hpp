@@ -1,11 +1,13 @@
 // metrics.json of a run (docs/RUN_FOLDER.md), and scores in the same format.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
 #include "evaluation/evaluation.hpp"
+#include "server/files/whole_file.hpp"
 #include "server/scoring/run_metrics.hpp"
 
 namespace overfly::server {
@@ -24,6 +26,7 @@ namespace overfly::server {
 /// Errors: kUnreadable naming the field.
 [[nodiscard]] Result<RunMetrics> run_metrics_from(const nlohmann::json& document);
 /// Errors: as read_json; kUnreadable naming file and field.
-[[nodiscard]] Result<RunMetrics> read_run_metrics(const std::filesystem::path& folder);
+[[nodiscard]] Result<RunMetrics> read_run_metrics(const std::filesystem::path& folder,
+                                                  std::uint64_t max_bytes = kMaxDocumentBytes);
 
 }  // namespace overfly::server

@@ -1,4 +1,4 @@
-// The list of 1000 runs, from memory and as REST gives it, and one run of it.
+// The list of 1000 runs, read for the first time, from memory and as REST gives it, and one run.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -12,7 +12,9 @@
 #include "server/net/rest/rest_api.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_manifest.hpp"
+#include "server/runs/run_index.hpp"
 #include "server/runs/run_manager.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly {
@@ -45,17 +47,37 @@ json manifest_of(int i) {
   return server::json_from(manifest);
 }
 
+/// One estimator under every alignment: 17 kB.
+json metrics_document() {
+  server::RunMetrics metrics;
+  metrics.flight = {25.0, 625.0};
+  evaluation::Score& score = metrics.estimators["feature"].score;
+  score.outcome = evaluation::Outcome::kCompleted;
+  for (const evaluation::AlignmentMode mode : evaluation::all_alignment_modes()) {
+    evaluation::AlignmentScore& aligned = score.alignments[mode];
+    aligned.mode = mode;
+    aligned.position_m = {0.1, 0.1, 0.1, 0.2};
+    aligned.rotation_deg = aligned.rotation_euler_norm_deg = aligned.position_m;
+    for (const double length_m : evaluation::Options().rpe_lengths_m) {
+      aligned.relative.push_back({length_m, 10, 0.1, 0.1, 0.1, 0.1});
+    }
+  }
+  return server::json_from(metrics);
+}
+
 /// A manager over a folder of many runs, which live as long as the program.
 server::RunManager& manager() {
   static const testing::TemporaryFolder folder;
   static const std::unique_ptr<server::RunManager> runs = [] {
     fs::create_directories(folder.path() / "scenarios");
+    const std::string metrics = metrics_document().dump(2);
     for (int i = 0; i < kRuns; ++i) {
       const fs::path run = folder.path() / "runs" / run_name(i);
       fs::create_directories(run);
       testing::write_text(server::created_file(run),
                           json{{"created_utc", server::utc_text(1'000'000'000LL * i)}}.dump(2));
       testing::write_text(server::manifest_file(run), manifest_of(i).dump(2));
+      testing::write_text(server::metrics_file(run), metrics);
     }
     server::RunManagerOptions options;
     options.runs_folder = folder.path() / "runs";
@@ -70,7 +92,15 @@ server::RunManager& manager() {
   return *runs;
 }
 
+/// Reads every run's files, as a server does at its first list.
+void first_list(benchmark::State& state) {
+  const fs::path folder = manager().folder(run_name(0)).value().parent_path();
+  for (auto _ : state) benchmark::DoNotOptimize(server::RunIndex(folder).list({}).size());
+}
+BENCHMARK(first_list)->Unit(benchmark::kMillisecond);
+
 void list_from_memory(benchmark::State& state) {
+  benchmark::DoNotOptimize(manager().runs().size());  // read already
   for (auto _ : state) benchmark::DoNotOptimize(manager().runs().size());
 }
 BENCHMARK(list_from_memory)->Unit(benchmark::kMicrosecond);

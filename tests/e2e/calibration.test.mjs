@@ -70,7 +70,11 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
   };
   const session = async () => (await getJson(stage.server, '/calibration-sessions')).sessions.at(-1);
   const untilSolved = () => role('summary').filter({ hasText: 'RMS' }).waitFor({ timeout: kPatience_ms });
-  const rms = async () => Number(/RMS ([\d.]+)/.exec(await role('summary').innerText())[1]);
+  /** The summary is empty for a moment when another image was taken. */
+  const rms = async () => {
+    const text = await role('summary').filter({ hasText: 'RMS' }).innerText();
+    return Number(/RMS ([\d.]+)/.exec(text)[1]);
+  };
   /** Until the server has searched so many more images of an endless source. */
   const untilSearched = async (count) => {
     const { images } = await session();
@@ -82,7 +86,12 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
   };
   const begin = async (kind) => {
     await field('kind').selectOption(kind);
+    const begun = page.waitForResponse(
+      (response) =>
+        response.request().method() === 'POST' && response.url().endsWith('/calibration-sessions'),
+    );
     await role('begin-calibration').click();
+    await begun;
   };
 
   step('refuses a board that looks the same after half a turn, and says why', async () => {

@@ -1,12 +1,12 @@
 // Two flights compared: added to each other, shown on one clock in every panel, moved against each
 // other, saved to files, and opened again by the address alone.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { getJson, programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { getJson, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -24,10 +24,7 @@ const skip = serverMissing() || browserMissing();
 function fly(runs) {
   for (const { id, airspeed_m_s, duration_s } of kFlights) {
     const fields = [`flight.course.airspeed_m_s=${airspeed_m_s}`, `duration_s=${duration_s}`];
-    const overrides = fields.flatMap((field) => ['--set', field]);
-    const scenario = sourceFile('scenarios/course.json');
-    const out = path.join(runs, id);
-    execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+    flyCourse(runs, id, fields);
   }
   return {};
 }
@@ -94,6 +91,91 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
       const expected = estimators.feature.alignments.init_scale.position_rmse_m;
       assert.equal(rmse[i], expected.toFixed(3));
     }
+  });
+
+  step('shows what differs between them', async () => {
+    await page.keyboard.press('Control+k');
+    await page.locator('#palette-input').fill('differences');
+    await page.keyboard.press('Enter');
+    await page.locator('.differences tbody tr').first().waitFor();
+    const rows = await page.evaluate(() =>
+      [...document.querySelectorAll('.differences tbody tr')].map((row) =>
+        [...row.children].map((cell) => cell.innerText),
+      ),
+    );
+    const values = new Map(rows.map(([field, ...own]) => [field, own]));
+    assert.deepEqual(values.get('scenario.flight.course.airspeed_m_s'), ['15', '25']);
+    assert.deepEqual(values.get('scenario.duration_s'), ['6', '4']);
+    assert.ok(!values.has('scenario.seed'), 'the same in both');
+    await dashboard.screenshot('compare_differences_1600x900');
+    await page.locator('.dv-tab', { hasText: /^Errors$/ }).click();
+  });
+
+  step('orders the runs by their errors', async () => {
+    const { runs } = await getJson(stage.server, '/runs');
+    const errors = new Map(runs.map(({ id, results }) => [id, results[0].position_rmse_m]));
+    const listed = () =>
+      page.evaluate(() => [...document.querySelectorAll('.run')].map((run) => run.dataset.run));
+    assert.deepEqual(await listed(), [kFast, kSlow], 'newest first');
+    const worst = errors.get(kSlow) > errors.get(kFast) ? kSlow : kFast;
+    await page.locator('#run-order').selectOption('largest-error');
+    assert.equal((await listed())[0], worst);
+    await page.locator('#run-order').selectOption('smallest-error');
+    assert.equal((await listed())[1], worst);
+    await page.locator('#run-order').selectOption('newest');
+  });
+
+  step('keeps tags and a note of a run, and finds it by them', async () => {
+    await page.locator(`.run[data-run="${kSlow}"] [data-role=edit-notes]`).click();
+    await page.locator('.notes-form [data-role=tags]').fill('wind, for the paper');
+    await page.locator('.notes-form [data-role=note]').fill('Fly again in the morning.');
+    await dashboard.screenshot('compare_notes_1600x900');
+    await page.locator('.notes-form [type=submit]').click();
+    await page.locator('.run-notes').waitFor({ state: 'hidden' });
+    const tag = page.locator(`.run[data-run="${kSlow}"] .tag`);
+    assert.deepEqual(await tag.allInnerTexts(), ['wind', 'for the paper']);
+    const kept = readFileSync(path.join(stage.runs.folder, kSlow, 'notes.json'), 'utf8');
+    assert.deepEqual(JSON.parse(kept), {
+      tags: ['wind', 'for the paper'],
+      note: 'Fly again in the morning.',
+    });
+    await tag.first().click();
+    assert.equal(await page.locator('.run').count(), 1);
+    await page.locator('#run-search').fill('morning');
+    assert.equal(await page.locator('.run').getAttribute('data-run'), kSlow);
+    await dashboard.screenshot('compare_tags_1600x900');
+    await page.locator('#run-search').fill('');
+    await page.locator('.run').nth(1).waitFor();
+  });
+
+  step('shows how the errors are distributed over the flights', async () => {
+    await page.keyboard.press('Control+k');
+    await page.locator('#palette-input').fill('repeated flights');
+    await page.keyboard.press('Enter');
+    await page.locator('[data-flight]').first().waitFor();
+    assert.equal(await page.locator('[data-flight]').count(), 1, 'the other flies faster');
+    await page.locator('#repeats-choice').selectOption('all');
+    const { runs } = await getJson(stage.server, '/runs');
+    const errors = new Map(runs.map(({ id, results }) => [id, results[0].position_rmse_m]));
+    const drawn = await page.evaluate(() =>
+      [...document.querySelectorAll('[data-flight]')].map((dot) => [
+        dot.dataset.flight,
+        Number(dot.getAttribute('cx')),
+      ]),
+    );
+    const places = new Map(drawn);
+    const [left, right] = [errors.get(kSlow), errors.get(kFast)].sort((a, b) => a - b);
+    assert.equal(places.size, 2);
+    const slowIsBetter = errors.get(kSlow) < errors.get(kFast);
+    assert.equal(places.get(kSlow) < places.get(kFast), slowIsBetter, 'errors grow to the right');
+    const summary = await page.locator('[data-box=feature] title').textContent();
+    const median = ((left + right) / 2).toFixed(3);
+    assert.match(summary, new RegExp(`^feature, 2 flights: median ${median} m`));
+    await page.locator('#repeats-choice').selectOption('tag:wind');
+    assert.equal(await page.locator('[data-flight]').getAttribute('data-flight'), kSlow);
+    await page.locator('#repeats-choice').selectOption('all');
+    await dashboard.screenshot('compare_repeats_1600x900');
+    await page.locator('.dv-tab', { hasText: /^Errors$/ }).click();
   });
 
   step('hides a track', async () => {

@@ -17,7 +17,7 @@ const kFlightPatience_ms = 300_000;
 const kMostBundle_bytes = 600_000;
 const kLayouts = {
   fly: ['launcher', 'runs', 'log', 'scene', 'plots', 'camera', 'debug', 'errors'],
-  compare: ['runs', 'launcher', 'log', 'scene', 'camera', 'plots', 'errors', 'plots-errors'],
+  compare: ['runs', 'launcher', 'log', 'scene', 'plot3d', 'camera', 'plots', 'errors', 'plots-errors'],
   estimator: ['debug', 'camera', 'image-error', 'depth', 'plots-errors', 'plots', 'status', 'errors', 'log', 'runs', 'launcher'],
   camera: ['runs', 'launcher', 'log', 'camera', 'depth', 'image-error', 'debug', 'scene', 'plots-image'],
 };
@@ -210,6 +210,46 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     await page.getByRole('button', { name: 'Delete the layout Without camera' }).click();
     await page.keyboard.press('Escape');
     await page.locator('.menu[data-layout=fly]').waitFor();
+  });
+
+  step('exports own layouts to a file, and imports them in another browser', async () => {
+    await page.getByRole('button', { name: 'Hide Log' }).click();
+    await page.locator('[data-role=layout-menu]').click();
+    await page.locator('#layout-name').fill('Team');
+    await page.getByRole('button', { name: 'Keep', exact: true }).click();
+    const shown = await shownPanels();
+    await page.locator('[data-role=layout-menu]').click();
+    await dashboard.screenshot('layout_files_1280x800');
+    const saving = page.waitForEvent('download');
+    await page.getByRole('button', { name: 'Export the layout Team' }).click();
+    const saved = await saving;
+    assert.equal(saved.suggestedFilename(), 'Team.layouts.json');
+    const text = readFileSync(await saved.path(), 'utf8');
+    assert.deepEqual(JSON.parse(text).layouts.map(({ name }) => name), ['Team']);
+    await page.evaluate(() => localStorage.clear());
+    await reopen('#layout=compare');
+    await page.locator('.menu[data-layout=compare]').waitFor();
+    const give = (name, content) =>
+      page.locator('[data-role=layout-file]').setInputFiles({ name, mimeType: 'application/json', buffer: Buffer.from(content) });
+    await give('damaged.json', text.replace('"runs"', '"radar"'));
+    await page.locator('.notice[data-level=error]', { hasText: /damaged\.json.*layouts\[0\]\.panels\..*no panel "radar"/ }).waitFor();
+    await dashboard.screenshot('layout_file_refused_1280x800');
+    await page.locator('.menu[data-layout=compare]').waitFor();
+    await give('Team.layouts.json', text);
+    await page.locator('.menu[data-layout=Team]').waitFor();
+    assert.deepEqual(await shownPanels(), shown);
+    // A dropped file.
+    await page.evaluate((content) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([content], 'other.json'));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true }));
+    }, text.replace('"Team"', '"Dropped"'));
+    await page.locator('.menu[data-layout=Dropped]').waitFor();
+    await page.reload();
+    await page.locator('[data-role=layout-menu]').click();
+    await page.locator('[data-choose-layout=Team]').waitFor();
+    await page.locator('[data-choose-layout=Dropped]').waitFor();
+    await page.keyboard.press('Escape');
   });
 
   step('opens the layout of a link in a browser that knows nothing', async () => {

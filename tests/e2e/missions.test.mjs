@@ -46,6 +46,9 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
   /** The page is drawn once a frame. */
   const untilValue = (id, value) =>
     dashboard.until(([name, text]) => document.getElementById(name)?.value === text, [id, value]);
+  /** For values that are read once, after a change that nothing else shows. */
+  const drawn = () =>
+    page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const untilItems = (count) =>
     dashboard.until(
       (n) => document.querySelectorAll('[data-role=mission-items] li').length === n,
@@ -86,6 +89,8 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
 
   step('edits an item in its fields, and undoes it', async () => {
     await rows().nth(1).locator('.mission-item').click();
+    // The fields of the item chosen before have the same ids and, here, the same height.
+    await page.getByText('2 · Waypoint', { exact: true }).waitFor();
     await untilValue('item-param-6', '300');
     await field('item-param-6').fill('20');
     await checks(page).getByText('Height above the ground below 50 m').waitFor();
@@ -104,6 +109,7 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
 
   step('warns of a circle that needs too much bank', async () => {
     await rows().nth(4).locator('.mission-item').click();
+    await page.getByText('5 · Circle, turns', { exact: true }).waitFor();
     await field('item-radius').fill('40');
     await checks(page).getByText(/^5\d° in the turn of item 5$/).waitFor();
     await page.locator('.mission-marker.warned', { hasText: '5' }).waitFor();
@@ -119,6 +125,7 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
     await page.mouse.move(box.x + 90, box.y - 20, { steps: 6 });
     await page.mouse.up();
     assert.match(await page.locator('.mission-form h3').innerText(), /^3 · Waypoint/);
+    await drawn();
     await reported();
     const dragged = Number(await field('item-lon').inputValue());
     await page.keyboard.press('ArrowRight');
@@ -139,6 +146,7 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
   });
 
   step('counts a height from elsewhere and leaves the item where it is', async () => {
+    await drawn();
     await reported();
     const before = await page.locator('[data-role=item-info]').innerText();
     await field('item-frame').selectOption({ label: 'above home' });

@@ -1,11 +1,10 @@
 // The pictures of a camera: image, depth, errors and debug image of the same instant, zoomed together,
 // with what the pixel under the mouse shows; and those of two runs side by side.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { getJson, programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { getJson, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -23,9 +22,7 @@ const skip = serverMissing() || browserMissing();
 
 function fly(runs) {
   for (const { id, fields } of kFlights) {
-    const all = [`duration_s=${kDuration_s}`, ...fields].flatMap((field) => ['--set', field]);
-    const scenario = sourceFile('scenarios/course.json');
-    execFileSync(programFile(), ['run', scenario, '--out', path.join(runs, id), '--quiet', ...all]);
+    flyCourse(runs, id, [`duration_s=${kDuration_s}`, ...fields]);
   }
   return {};
 }

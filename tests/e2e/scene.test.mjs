@@ -1,12 +1,11 @@
 // The 3D view: its modes, what it shows, the camera's image on the ground, a picture saved, and the
 // address that opens the same view again.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -19,9 +18,7 @@ const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 function fly(runs) {
-  const fields = ['duration_s=6', `estimators=${kEstimators}`].flatMap((field) => ['--set', field]);
-  const scenario = sourceFile('scenarios/course.json');
-  execFileSync(programFile(), ['run', scenario, '--out', path.join(runs, kRun), '--quiet', ...fields]);
+  flyCourse(runs, kRun, ['duration_s=6', `estimators=${kEstimators}`]);
   return {};
 }
 

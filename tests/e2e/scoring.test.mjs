@@ -5,7 +5,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { programFile, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -18,11 +19,7 @@ const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
 
 function fly(runs) {
-  const scenario = sourceFile('scenarios/course.json');
-  const fields = ['duration_s=5', 'flight.course.airspeed_m_s=25'];
-  const overrides = fields.flatMap((field) => ['--set', field]);
-  const out = path.join(runs, kRun);
-  execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+  flyCourse(runs, kRun, ['duration_s=5', 'flight.course.airspeed_m_s=25']);
   return {};
 }
 

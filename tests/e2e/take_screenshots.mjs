@@ -1,9 +1,10 @@
 // Takes the pictures of docs/DASHBOARD.md and README.md: flies two short flights, opens each layout
 // and page, and saves what it shows. Run by scripts/screenshots.
 import { execFileSync } from 'node:child_process';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { browserMissing } from './support/browser.mjs';
+import { flyCourse } from './support/flights.mjs';
 import { programFile, serverMissing, sourceFile } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 
@@ -22,12 +23,49 @@ if (missing) throw new Error(missing);
 function fly(runs) {
   for (const { id, fields } of kFlights) {
     const all = [...fields, `duration_s=${kDuration_s}`, 'pacing=lockstep'];
-    const overrides = all.flatMap((field) => ['--set', field]);
-    const scenario = sourceFile('scenarios/course.json');
-    const out = path.join(runs, id);
-    execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+    flyCourse(runs, id, all);
   }
   return {};
+}
+
+/** A small sweep that shows where an estimator fails. */
+function flySweep() {
+  const folder = path.join(path.dirname(stage.runs.folder), 'sweeps');
+  const file = path.join(path.dirname(folder), 'lens.json');
+  mkdirSync(folder, { recursive: true });
+  const small = { 'camera.width_px': 320, 'camera.height_px': 240 };
+  const sweep = {
+    format_version: 1,
+    title: 'Noise and defocus',
+    description: 'Which images the estimators survive at 25 m/s and 120 m.',
+    scenario: sourceFile('scenarios/course.json'),
+    set: {
+      duration_s: 6,
+      'flight.course.height_agl_m': 120,
+      'camera.sensor.shot_noise': true,
+      ...small,
+    },
+    axes: [
+      {
+        path: 'camera.sensor.defocus_sigma_px',
+        label: 'Defocus',
+        unit: 'px',
+        values: [0, 2, 4, 6],
+      },
+      {
+        path: 'camera.sensor.read_noise_e',
+        label: 'Read noise',
+        unit: 'electrons',
+        values: [10, 300, 600, 1200],
+      },
+    ],
+    estimators: [
+      { name: 'feature', type: 'feature' },
+      { name: 'homography', type: 'baseline_homography' },
+    ],
+  };
+  writeFileSync(file, JSON.stringify(sweep));
+  execFileSync(programFile(), ['sweep', file, '--out', path.join(folder, 'lens'), '--quiet']);
 }
 
 const [slow, fast] = kFlights.map(({ id }) => id);
@@ -36,24 +74,25 @@ try {
   const { page } = stage.dashboard;
   const save = async (name) => {
     mkdirSync(kFolder, { recursive: true });
-    await page.screenshot({ path: path.join(kFolder, `${name}.jpg`), type: 'jpeg', quality: 82 });
+    await page.screenshot({
+      path: path.join(kFolder, `${name}.jpg`),
+      type: 'jpeg',
+      quality: 82,
+    });
   };
   const open = async (hash, theme = 'dark') => {
     await page.goto('about:blank');
     await page.emulateMedia({ colorScheme: theme });
     await stage.dashboard.open(`${stage.server.address}#${hash}`);
     await page.locator('.panel[data-frame], [data-panel][data-frame]').first().waitFor();
-    await stage.dashboard.until(
-      (t_s) => {
-        const { frame, tNs } = document.querySelector('[data-panel=timeline]').dataset;
-        const panels = [...document.querySelectorAll('[data-panel][data-frame]')];
-        return (
-          Math.abs(Number(tNs) / 1e9 - t_s) < 0.1 &&
-          panels.some(({ dataset }) => dataset.frame === frame)
-        );
-      },
-      kInstant_s,
-    );
+    await stage.dashboard.until((t_s) => {
+      const { frame, tNs } = document.querySelector('[data-panel=timeline]').dataset;
+      const panels = [...document.querySelectorAll('[data-panel][data-frame]')];
+      return (
+        Math.abs(Number(tNs) / 1e9 - t_s) < 0.1 &&
+        panels.some(({ dataset }) => dataset.frame === frame)
+      );
+    }, kInstant_s);
     // Pictures of the last panels, and plots, which are drawn at most 15 times a second.
     await page.waitForTimeout(2000);
   };
@@ -104,6 +143,12 @@ try {
   await page.locator('[data-role=mission-items] .mission-item').nth(2).click();
   await page.waitForTimeout(2000);
   await save('dashboard_missions');
+  await page.keyboard.press('Escape');
+  flySweep();
+  await page.locator('[data-role=open-sweeps]').click();
+  await page.locator('.sweep-cell').nth(6).click();
+  await page.waitForTimeout(500);
+  await save('dashboard_sweeps');
 } finally {
   await stage.close();
 }

@@ -1,16 +1,16 @@
 // Moving pictures as VP8 video by WebCodecs: what is sent, what is shown, and JPEG where the browser
 // cannot decode video, or fails to.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
 import { Dashboard } from './support/dashboard.mjs';
-import { programFile, serverMissing, sourceFile } from './support/server.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kRun = '20260101-000001-moving';
+const kRate_hz = 31;
 const kVp8 = 3;
 const kKeyFlag = 8;
 
@@ -20,9 +20,8 @@ const skip = serverMissing() || browserMissing();
 
 /** Without recorded images: the camera's pictures are rendered again and then encoded. */
 function fly(runs) {
-  const scenario = sourceFile('scenarios/course.json');
   const fields = ['duration_s=30', 'camera.width_px=640', 'camera.height_px=480', 'estimators=[]'];
-  execFileSync(programFile(), ['run', scenario, '--out', path.join(runs, kRun), '--quiet', ...fields.flatMap((field) => ['--set', field])]);
+  flyCourse(runs, kRun, fields);
   return {};
 }
 
@@ -94,6 +93,8 @@ describe('moving pictures', { skip, timeout: 600_000 }, () => {
     dashboard = new Dashboard(page);
     heard = listen(page);
     await dashboard.open(`${stage.server.address}#layout=camera&run=${kRun}&t=${t_s}`);
+    // At first the run is shown from its beginning.
+    await dashboard.untilCursor(Math.floor(t_s * kRate_hz));
     await dashboard.untilSameInstant(['camera']);
   };
   const ofCamera = () => heard.pictures.filter(({ name }) => name === 'camera');
@@ -166,7 +167,7 @@ describe('moving pictures', { skip, timeout: 600_000 }, () => {
     assert.match(moving.rate, /^\d+(\.\d)? Hz/);
     assert.match(moving.hint, /^Measured: .* Mbit\/s as VP8 video/);
     await dashboard.page.goto('about:blank');
-    await open(removeVideo, moving.frame / 31 + 0.001);
+    await open(removeVideo, moving.frame / kRate_hz + 0.001);
     const resting = await grid();
     assert.equal(resting.frame, moving.frame);
     assert.equal(resting.levels.length, moving.levels.length);

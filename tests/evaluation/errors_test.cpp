@@ -150,6 +150,34 @@ TEST(Errors, RmsAndMeanOfRelativeErrorsDifferWherePiecesDo) {
   EXPECT_NEAR(relative[0].translation_percent, 10.0 / std::sqrt(2.0), 1e-9);
 }
 
+/// 12 km in steps of 20 m, too long by a factor that grows: 1 % more every kilometre.
+TEST(Errors, OfLongFlightsAreThoseBetweenPositionFixesToo) {
+  std::vector<MatchedPose> matches;
+  std::vector<Pose> estimate;
+  double way_m = 0.0;
+  for (int i = 0; i <= 600; ++i) {
+    MatchedPose match;
+    match.T_world_camera.translation = {20.0 * i, 0.0, 0.0};
+    matches.push_back(match);
+    if (i > 0) way_m += 20.0 * (1.0 + 1e-5 * 20.0 * (i - 0.5));
+    Pose pose;
+    pose.translation = {way_m, 0.0, 0.0};
+    estimate.push_back(pose);
+  }
+  const auto relative = relative_errors(matches, estimate, Options().rpe_lengths_m);
+  ASSERT_EQ(relative.size(), 11U);
+  EXPECT_EQ(relative[10].length_m, 5000.0);
+  for (const RelativeError& error : relative) {
+    // Starts are spread evenly from 0 to the last one whose piece ends within the flight; a piece
+    // is one step longer than its length.
+    const double piece_m = error.length_m + 20.0;
+    const double last_start_m = 200.0 * (error.pairs - 1);
+    const double mean_percent = 1e-3 * (0.5 * last_start_m + 0.5 * piece_m);
+    EXPECT_NEAR(error.translation_mean_percent, mean_percent * piece_m / error.length_m, 1e-9)
+        << error.length_m;
+  }
+}
+
 /// Lost at half of a straight flight: with the last pose held, the error grows with the way.
 TEST(Errors, HoldsTheLastPoseToTheEndOfTheFlight) {
   Trajectory truth;

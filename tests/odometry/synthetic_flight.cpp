@@ -150,17 +150,20 @@ Image SyntheticGround::render(const CameraModel& camera_model,
   std::mt19937_64 rng(noise_seed);
   const Eigen::Matrix3d R = T_world_camera.rotation.toRotationMatrix();
   const Eigen::Vector3d& eye = T_world_camera.translation;
+  double ground_m = 0.0;  // height of the ground at the previous pixel
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       const Eigen::Vector3d ray =
           R * rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
                    static_cast<std::size_t>(x)];
       if (ray.z() > -0.02) continue;  // sky
-      double along = -eye.z() / ray.z();
+      double along = (ground_m - eye.z()) / ray.z();
       if (relief_m_ != 0.0) {
         for (int i = 0; i < 6; ++i) {
-          along =
-              (height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y()) - eye.z()) / ray.z();
+          const double before_m = ground_m;
+          ground_m = height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y());
+          along = (ground_m - eye.z()) / ray.z();
+          if (std::abs(ground_m - before_m) < 1e-5) break;
         }
       }
       // The footprint of a pixel, mean of along and across the slope.

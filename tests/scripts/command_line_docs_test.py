@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Compares the options of every command with docs/COMMAND_LINE.md.
+"""Compares the options of every command with docs/COMMAND_LINE.md, and those that other files use.
 
-Usage: command_line_docs_test.py OVERFLY_BINARY docs/COMMAND_LINE.md
+Usage: command_line_docs_test.py OVERFLY_BINARY docs/COMMAND_LINE.md [FILE...]
 
 Each option that a command's --help lists must occur in the command's rows of the table of commands or in
-the text outside the table, and each option in the first cell of such a row must exist.
+the text outside the table, and each option in the first cell of such a row must exist. Every option in a FILE must be one
+of some command.
 """
 
 import re
@@ -43,7 +44,7 @@ def commands_of(binary, command=()):
 
 
 def main():
-    binary, document = sys.argv[1:]
+    binary, document, *users = sys.argv[1:]
     with open(document, encoding="utf-8") as file:
         lines = file.read().splitlines()
     rows = [line for line in lines if line.startswith("| `overfly ")]
@@ -72,6 +73,11 @@ def main():
         if rows_of[command]:
             problems += [f"{name} {option}: is in {document} but not in --help"
                          for option in sorted(usage - options)]
+    every = set().union(*commands.values())
+    for user in users:
+        with open(user, encoding="utf-8") as file:
+            problems += [f"{user} uses {option}, which no command has"
+                         for option in sorted(set(OPTION.findall(file.read())) - every)]
     print("\n".join(problems) or f"{document} has every option of {len(commands)} commands")
     sys.exit(1 if problems else 0)
 

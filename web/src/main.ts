@@ -10,6 +10,7 @@ import './styles/pictures.css';
 import './styles/scene.css';
 import './styles/errors.css';
 import './styles/plots.css';
+import './styles/plot3d.css';
 import './styles/side.css';
 import './styles/timeline.css';
 import './styles/estimators.css';
@@ -18,11 +19,13 @@ import './styles/residuals.css';
 import './styles/scoring.css';
 import './styles/calibration.css';
 import './styles/missions.css';
+import './styles/sweeps.css';
 import './styles/palette.css';
 import './styles/narrow.css';
 import { CalibrationClient } from './connection/calibration_client';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
+import { SweepClient } from './connection/sweep_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
 import { CalibrationDesk } from './store/calibration/calibration_desk';
@@ -30,6 +33,7 @@ import { Cameras } from './store/pictures/cameras';
 import { openVideo, videoWorks } from './store/pictures/video_decoding';
 import { PixelProbe } from './store/pictures/pixel_probe';
 import { Catalogue } from './store/catalogue';
+import { LayoutExchange } from './store/layouts/layout_exchange';
 import { Layouts } from './store/layouts/layouts';
 import type { Storage } from './store/layouts/layouts';
 import { LogBrowser } from './store/logs/log_browser';
@@ -45,6 +49,7 @@ import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
+import { SweepDesk } from './store/sweeps/sweep_desk';
 import { Themes } from './store/themes';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
 import { followAddress } from './views/address_bar';
@@ -102,6 +107,7 @@ const storage = browserStorage();
 const missions = new MissionDesk(store, rest, session, storage, later, newKey, () =>
   catalogue.readScenarios(),
 );
+const sweeps = new SweepDesk(store, new SweepClient(rest), session, notices, later);
 const layouts = new Layouts(store, notices, storage, {
   look: () => {
     const { scene: shown, sideBySide } = store.state;
@@ -112,6 +118,7 @@ const layouts = new Layouts(store, notices, storage, {
     session.setSideBySide(sideBySide);
   },
 });
+const layoutExchange = new LayoutExchange(layouts, notices);
 const themes = new Themes(store, storage, applyTheme);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
@@ -132,10 +139,12 @@ const context = {
   scores,
   calibration,
   missions,
+  sweeps,
   rest,
   notices,
   client,
   layouts,
+  layoutExchange,
   themes,
 };
 scene.apply(store.state.scene);

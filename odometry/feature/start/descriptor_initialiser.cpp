@@ -54,13 +54,23 @@ DescriptorInitialiser::DescriptorInitialiser(const PinholeCamera& camera,
 
 bool DescriptorInitialiser::process(const FrameImage& frame, OrbExtractor& orb, Map& map) {
   const DescribedCorners now = describe_image(frame.pyramid.level(0), orb);
-  for (Reference& reference : references_) {
-    if (!compare(reference, frame, now, orb, map)) continue;
+  // The search for a motion takes long where there is none to be found, as over noise.
+  const bool one_only = tries_ >= options_.full_tries;
+  const std::size_t turn =
+      references_.empty() ? 0 : static_cast<std::size_t>(tries_) % references_.size();
+  for (std::size_t i = 0; i < references_.size(); ++i) {
+    if (!compare(references_[i], frame, now, !one_only || i == turn, orb, map)) continue;
     reset();
     return true;
   }
+  if (!references_.empty()) ++tries_;
   keep(frame, now);
   return false;
+}
+
+void DescriptorInitialiser::reset() {
+  references_.clear();
+  tries_ = 0;
 }
 
 DescriptorInitialiser::Pixels DescriptorInitialiser::match(const Reference& reference,
@@ -75,10 +85,12 @@ DescriptorInitialiser::Pixels DescriptorInitialiser::match(const Reference& refe
   return pixels;
 }
 
-/// Tries to create the map from a reference and this frame; otherwise stores the frame as a view.
+/// Tries to create the map from a reference and this frame, if `try_motion`; otherwise stores the
+/// frame as a view.
 bool DescriptorInitialiser::compare(Reference& reference,
                                     const FrameImage& frame,
                                     const DescribedCorners& now,
+                                    bool try_motion,
                                     OrbExtractor& orb,
                                     Map& map) const {
   View view{frame, match(reference, now)};
@@ -100,10 +112,12 @@ bool DescriptorInitialiser::compare(Reference& reference,
   }
   reference.misses = 0;
   std::vector<FirstMapInput> inputs;
-  const double waited_s = seconds_between(reference.frame, frame);
-  for (const TwoViewReconstruction& motion : motions(reference, view.pixels, matched, waited_s)) {
-    FirstMapInput input = input_of(reference, view, matched, motion);
-    if (spread(input)) inputs.push_back(std::move(input));
+  if (try_motion) {
+    const double waited_s = seconds_between(reference.frame, frame);
+    for (const TwoViewReconstruction& motion : motions(reference, view.pixels, matched, waited_s)) {
+      FirstMapInput input = input_of(reference, view, matched, motion);
+      if (spread(input)) inputs.push_back(std::move(input));
+    }
   }
   if (const auto chosen = choose_first_map(camera_, std::move(inputs))) {
     fill_first_map(camera_, chosen->input, chosen->solved, orb, map);

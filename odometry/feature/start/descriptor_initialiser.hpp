@@ -29,6 +29,7 @@ struct DescriptorInitialiserOptions {
   int coarsest_patch_level = 2;
   double scale_factor = 1.2;  ///< between the corners' levels
   int references = 5;         ///< number of earlier images to compare with
+  int full_tries = 62;        ///< then each image is compared with one reference, in turn
   double reference_s = 0.15;  ///< minimum time between references
   int views = 12;             ///< maximum between a reference and the newest image
   int min_matches = 100;
@@ -52,7 +53,7 @@ class DescriptorInitialiser {
   bool process(const FrameImage& frame, OrbExtractor& orb, Map& map);
   /// Adds an image from before the first processed one as a further reference.
   void remember(const FrameImage& frame, OrbExtractor& orb);
-  void reset() { references_.clear(); }
+  void reset();
 
  private:
   using Pixels = std::vector<std::optional<Eigen::Vector2d>>;  ///< one for each corner
@@ -72,6 +73,7 @@ class DescriptorInitialiser {
   bool compare(Reference& reference,
                const FrameImage& frame,
                const DescribedCorners& now,
+               bool try_motion,
                OrbExtractor& orb,
                Map& map) const;
   [[nodiscard]] std::vector<TwoViewReconstruction> motions(const Reference& reference,
@@ -89,6 +91,7 @@ class DescriptorInitialiser {
   PinholeCamera camera_;
   DescriptorInitialiserOptions options_;
   std::deque<Reference> references_;  ///< oldest first
+  int tries_ = 0;                     ///< images compared without success
 };
 
 }  // namespace overfly::odometry::feature

@@ -32,6 +32,7 @@ struct ServeArguments {
   std::string address = "127.0.0.1";  ///< loopback by default
   std::uint16_t port = 8480;          ///< 0 = any free port
   std::string runs = "runs";
+  std::string sweeps = "sweeps";
   std::string scenarios;
   std::string web;
   std::string token_file;
@@ -84,6 +85,7 @@ int serve(const ServeArguments& arguments) {
   if (!token) return report(token.error());
   server::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;
+  manager_options.sweeps_folder = arguments.sweeps;
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
   manager_options.saved_scenarios_folder = arguments.saved_scenarios;
@@ -138,6 +140,11 @@ void add_serve_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--port", arguments->port, "Port; 0 = any free one")->capture_default_str();
   command->add_option("--runs", arguments->runs, "Folder of the runs")->capture_default_str();
+  command
+      ->add_option("--sweeps",
+                   arguments->sweeps,
+                   "Folder of the sweeps, which need not exist; an empty name = none are shown")
+      ->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
   command
       ->add_option("--saved-scenarios",

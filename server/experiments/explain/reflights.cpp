@@ -97,7 +97,7 @@ Result<std::vector<const Reflight*>> Reflights::fly(const Json& document,
 Status Reflights::start(const Prepared& prepared) {
   if (options_.progress) options_.progress(flights_.size(), prepared.flight.name);
   return FlightFiles(options_.folder)
-      .launch(processes_, prepared.id, prepared.scenario.resolved, options_.timeout_s);
+      .launch(processes_, prepared.id, prepared.scenario, options_.timeout_s);
 }
 
 void Reflights::take_results(const Prepared& prepared, const std::string& failure) {
@@ -149,7 +149,7 @@ Status Reflights::fly_all(std::vector<Prepared>& planned) {
       flying.push_back(waiting.front());
       waiting.pop_front();
     }
-    while (const std::optional<EndedFlight> ended = processes_.ended()) {
+    while (const std::optional<EndedFlight> ended = *processes_.ended()) {
       if (is_cancelled(options_.cancel)) break;
       const auto which = std::find_if(flying.begin(), flying.end(), [&](const Prepared* prepared) {
         return prepared->id == ended->id;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "server/experiments/sweep_document.hpp"
 #include "server/experiments/sweep_results.hpp"
 #include "server/files/whole_file.hpp"
@@ -110,7 +111,7 @@ std::vector<Json> sorted_cells(const SweepScores& scores) {
 
 }  // namespace
 
-Result<SweepScores> read_sweep_scores(const fs::path& folder) {
+Result<SweepScores> read_sweep_scores(const fs::path& folder, const std::atomic<bool>* cancel) {
   const Result<Json> sweep = read_json(folder / "sweep.json", kMaxSweepBytes);
   if (!sweep) return sweep.error();
   const Result<SweepResults> results = SweepResults::read(folder);
@@ -124,6 +125,7 @@ Result<SweepScores> read_sweep_scores(const fs::path& folder) {
   }
   RunReader runs(folder);
   for (const SweepResult* result : results->newest()) {
+    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     if (!result->cell.is_object()) continue;
     if (result->completed()) {
       add_flight(*result, runs, scores);

@@ -1,6 +1,7 @@
 // The flights of a sweep's folder with their scores.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -43,7 +44,8 @@ struct SweepScores {
 };
 
 /// Reads sweep.json, results.jsonl and the metrics of the newest result of every flight.
-/// Errors: as read_json and SweepResults::read; kNotFound if the folder has no result.
-[[nodiscard]] Result<SweepScores> read_sweep_scores(const std::filesystem::path& folder);
+/// Errors: as read_json and SweepResults::read; kNotFound if the folder has no result; kCancelled.
+[[nodiscard]] Result<SweepScores> read_sweep_scores(const std::filesystem::path& folder,
+                                                    const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::server::experiments

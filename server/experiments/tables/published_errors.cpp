@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/experiments/sweep_document.hpp"
 #include "server/files/file_field.hpp"
 #include "server/files/whole_file.hpp"
 

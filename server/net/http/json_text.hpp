@@ -37,6 +37,7 @@ class JsonFields {
 
   /// Makes an absent field an error.
   void require(const std::string& name);
+  /// @param message  follows the field's name: ": must be ..." or " = 3: must be ..."
   void reject(const std::string& name, const std::string& message);
   /// Errors: kInvalidArgument "where.field = value: must be limit".
   [[nodiscard]] Status finish();

@@ -1,10 +1,12 @@
 // The REST resources under /api/v1 (docs/PROTOCOL.md, server/net/rest/openapi.json).
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "server/calibration/session/calibration_desk.hpp"
+#include "server/experiments/service/sweep_service.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/maps/map_service.hpp"
 #include "server/net/http/rest_router.hpp"
@@ -22,8 +24,12 @@ void add_service_routes(RestRouter* router);
 void add_scenario_routes(RestRouter* router,
                          server::RunManager* runs,
                          const ReadingRoutes& readers);
-/// runs, runs/{id}, runs/{id}/cancel
+/// runs, runs/{id}, runs/{id}/cancel, runs/{id}/notes
 void add_run_routes(RestRouter* router, server::RunManager* runs);
+/// differences
+void add_difference_routes(RestRouter* router,
+                           server::RunManager* runs,
+                           const ReadingRoutes& readers);
 /// runs/{id}/metrics, estimators, manifest, scenario, trajectories/{name}
 void add_result_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/frames/{k}.jpg
@@ -62,6 +68,16 @@ void add_trajectory_routes(RestRouter* router,
                            server::TrajectoryLibrary* library,
                            const ReadingRoutes& readers);
 
+/// What the routes of sweeps need.
+struct SweepRoutes {
+  server::experiments::SweepService* sweeps = nullptr;
+  std::filesystem::path folder;  ///< of the sweeps
+  ReadingRoutes readers;
+};
+/// sweeps, sweeps/{name}
+void add_sweep_routes(RestRouter* router, const SweepRoutes& routes);
+/// sweep-files, sweep-files/{name}, sweep-check; starting, continuing and cancelling sweeps
+void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes);
 /// calibration-sources, calibration-sessions and what is in them
 void add_calibration_session_routes(RestRouter* router, server::CalibrationDesk* desk);
 /// calibrations, calibrations/{name}

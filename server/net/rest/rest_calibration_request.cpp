@@ -22,10 +22,10 @@ LensChoice lens_of(JsonFields& fields) {
   const auto model = distortion_model_from(name);
   LensChoice lens{model.value_or(DistortionModel::kRadtan), fields.boolean("k3").value_or(false)};
   if (!model || *model == DistortionModel::kFov) {
-    fields.reject("model", "must be none, radtan or equidistant");
+    fields.reject("model", ": must be none, radtan or equidistant");
   }
   if (lens.k3 && lens.model != DistortionModel::kRadtan) {
-    fields.reject("k3", "must be given with the model radtan only");
+    fields.reject("k3", ": must be given with the model radtan only");
   }
   return lens;
 }
@@ -40,7 +40,7 @@ Status read_source(const json& object, server::DeskRequest& request) {
   fields.require("kind");
   const auto kind = kKinds.find(fields.text("kind").value_or(""));
   if (kind == kKinds.end()) {
-    fields.reject("kind", "must be folder, recording, scenario, upload or camera");
+    fields.reject("kind", ": must be folder, recording, scenario, upload or camera");
     return fields.finish();
   }
   request.kind = kind->second;
@@ -66,10 +66,10 @@ Status read_board(const json& object, calibration::Board& board) {
   const auto markers = fields.text("markers");
   const auto marker_m = fields.number("marker_m", 1e-6, kWidestSquareM);
   if (markers && *markers != "4x4" && *markers != "5x5" && *markers != "6x6") {
-    fields.reject("markers", "must be 4x4, 5x5 or 6x6");
+    fields.reject("markers", ": must be 4x4, 5x5 or 6x6");
   }
   if (markers.has_value() != marker_m.has_value()) {
-    fields.reject("marker_m", "must be given together with board.markers");
+    fields.reject("marker_m", ": must be given together with board.markers");
   }
   if (markers && marker_m)
     board.markers = calibration::BoardMarkers{markers->front() - '0', *marker_m};
@@ -106,7 +106,7 @@ Result<SolveCommand> solve_command_from(const std::string& body) {
     for (const json& view : *views) {
       const bool whole = view.is_number_unsigned() && view < server::kMostSessionViews;
       if (!whole) {
-        fields.reject("left_out", "must be numbers of views");
+        fields.reject("left_out", ": must be numbers of views");
         break;
       }
       command.left_out.insert(view.get<std::size_t>());

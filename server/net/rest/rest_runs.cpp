@@ -32,7 +32,7 @@ Result<StartBody> parse_start(const std::string& text) {
   StartBody start;
   if (body->contains("document")) {
     for (const char* other : {"scenario", "overrides"}) {
-      if (body->contains(other)) fields.reject(other, "must not be given with document");
+      if (body->contains(other)) fields.reject(other, ": must not be given with document");
     }
     if (const json* document = fields.object("document")) start.document = *document;
     if (const Status status = fields.finish(); !status) return status.error();
@@ -86,7 +86,7 @@ HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   const auto info = start->document ? start_document(*runs, *start->document, key, &report)
                                     : runs->start(start->scenario, start->overrides, key, &report);
   if (!info) return start_refusal(report, info.error());
-  HttpResponse response = json_response(report.repeated ? 200 : 201, run_json(*info));
+  HttpResponse response = json_response(report.repeated ? 200 : 201, listed_run_json(*info));
   response.headers.emplace_back("Location", "/api/v1/runs/" + info->id);
   return response;
 }
@@ -102,7 +102,8 @@ class RunListText {
     std::string text = R"({"runs":[)";
     for (const auto& info : runs) {
       const auto known = texts_.find(info);
-      std::string own = known == texts_.end() ? to_text(run_json(*info)) : std::move(known->second);
+      std::string own =
+          known == texts_.end() ? to_text(listed_run_json(*info)) : std::move(known->second);
       if (!kept.empty()) text += ',';
       text += own;
       kept.emplace(info, std::move(own));
@@ -124,7 +125,38 @@ HttpResponse list_runs(RunManager* runs, RunListText& texts) {
 
 HttpResponse one_run(RunManager* runs, const std::string& id, int status) {
   const auto info = runs->run(id);
-  return info ? json_response(status, run_json(*info)) : error_response(info.error());
+  return info ? json_response(status, listed_run_json(*info)) : error_response(info.error());
+}
+
+Result<server::RunNotes> parse_notes(const std::string& text) {
+  const Result<json> body = parse_object(text, "the body");
+  if (!body) return body.error();
+  JsonFields fields(*body, "");
+  fields.require("tags");
+  fields.require("note");
+  server::RunNotes notes;
+  notes.note = fields.text("note").value_or("");
+  if (const json* tags = fields.array("tags")) {
+    for (std::size_t i = 0; i < tags->size(); ++i) {
+      if (!(*tags)[i].is_string()) {
+        fields.reject("tags." + std::to_string(i), ": must be a text");
+        break;
+      }
+      notes.tags.push_back((*tags)[i].get<std::string>());
+    }
+  }
+  if (const Status status = fields.finish(); !status) return status.error();
+  return notes;
+}
+
+HttpResponse set_notes(RunManager* runs, const std::string& id, const HttpRequest& request) {
+  if (auto refused = not_json(request)) return std::move(*refused);
+  const Result<server::RunNotes> notes = parse_notes(request.body);
+  if (!notes) return error_response(notes.error());
+  if (const Status status = runs->set_notes(id, *notes); !status) {
+    return error_response(status.error());
+  }
+  return one_run(runs, id, 200);
 }
 
 }  // namespace
@@ -144,6 +176,10 @@ void add_run_routes(RestRouter* router, RunManager* runs) {
       "POST", "/api/v1/runs/{id}/cancel", [runs](const RouteCall& call, const Respond& respond) {
         const Status status = runs->cancel(call.path.at("id"));
         respond(status ? one_run(runs, call.path.at("id"), 202) : error_response(status.error()));
+      });
+  router->add(
+      "PUT", "/api/v1/runs/{id}/notes", [runs](const RouteCall& call, const Respond& respond) {
+        respond(set_notes(runs, call.path.at("id"), call.request));
       });
   router->add("DELETE", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
     const Status status = runs->remove(call.path.at("id"));

@@ -26,7 +26,7 @@ std::vector<std::string> texts_of(JsonFields& fields, const std::string& name, s
   std::vector<std::string> texts;
   const json* const array = fields.array(name);
   if (array == nullptr) return texts;
-  const std::string limit = "must be 1 to " + std::to_string(most) + " texts";
+  const std::string limit = ": must be 1 to " + std::to_string(most) + " texts";
   if (array->empty() || array->size() > most) fields.reject(name, limit);
   for (const json& entry : *array) {
     if (!entry.is_string() || texts.size() == most) {
@@ -46,7 +46,7 @@ void read_alignments(JsonFields& fields, EvaluationRequest& request) {
       request.score.alignments = all;
       return;
     }
-    if (!mode) fields.reject("alignments", "must be names of alignments, or \"all\"");
+    if (!mode) fields.reject("alignments", ": must be names of alignments, or \"all\"");
     if (mode) request.score.alignments.push_back(*mode);
   }
   if (request.score.alignments.empty()) {
@@ -70,7 +70,7 @@ Result<EvaluationRequest> evaluation_request_from(const std::string& body) {
   } else if (request.association == "index") {
     request.score.association = evaluation::Association::kIndex;
   } else if (request.association != "interpolate") {
-    fields.reject("association", "must be interpolate, nearest or index");
+    fields.reject("association", ": must be interpolate, nearest or index");
   }
   if (const auto limit_ms = fields.number("max_time_difference_ms", 0.0, 1e9)) {
     request.score.max_time_difference_ns = static_cast<std::int64_t>(*limit_ms * 1e6);

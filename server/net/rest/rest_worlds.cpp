@@ -76,7 +76,7 @@ Result<std::vector<Geodetic>> points_from(const std::string& body) {
   fields.require("points");
   std::vector<Geodetic> points;
   const json* const array = fields.array("points");
-  const std::string limit = "must be 1 to " + std::to_string(server::kMaxHeightPoints) +
+  const std::string limit = ": must be 1 to " + std::to_string(server::kMaxHeightPoints) +
                             " arrays of latitude and longitude in degrees";
   if (array != nullptr && (array->empty() || array->size() > server::kMaxHeightPoints)) {
     fields.reject("points", limit);

@@ -50,11 +50,19 @@ void LinkMeter::close_window(std::int64_t now_ns) {
   if (share > kMuchBlocked) {
     if (windows_since_restored_ <= kTrialWindows) {
       windows_to_wait_ = std::min(2 * windows_to_wait_, kLongestWait);
+      too_early_at_ = reduction_;
+      windows_since_restored_ = kTrialWindows;
     }
     reduction_ = std::min(reduction_ + 1, kMostReduction);
     calm_windows_ = 0;
   } else if (share < kLittleBlocked && reduction_ > 0) {
-    if (++calm_windows_ < windows_to_wait_) return;
+    if (windows_since_restored_ > kTrialWindows && reduction_ <= too_early_at_) {
+      // The step that was too early before holds now: the way has become wider.
+      windows_to_wait_ = kFirstWait;
+      too_early_at_ = -1;
+    }
+    const bool may_be_too_early = reduction_ - 1 <= too_early_at_;
+    if (++calm_windows_ < (may_be_too_early ? windows_to_wait_ : kFirstWait)) return;
     --reduction_;
     calm_windows_ = 0;
     windows_since_restored_ = 0;

@@ -8,7 +8,8 @@ namespace overfly::net {
 
 /// Watches how long pictures wait for the client to show the ones before. While they wait for a
 /// large part of the time, they are reduced step by step; when they hardly wait any more, they are
-/// restored, with longer and longer pauses after each step back that proved too early.
+/// restored, with longer and longer pauses before a step back that proved too early. Once that step
+/// holds, the pauses are short again.
 class LinkMeter {
  public:
   /// By how much pictures are reduced: 0 = not at all.
@@ -33,7 +34,8 @@ class LinkMeter {
   std::int64_t moving_ns_ = 0;   ///< in the window
   std::int64_t blocked_ns_ = 0;  ///< likewise
   int calm_windows_ = 0;
-  int windows_to_wait_ = 0;
+  int windows_to_wait_ = 0;  ///< before a step back to `too_early_at_` or less
+  int too_early_at_ = -1;    ///< reduction after the last step back that was too early
   int windows_since_restored_ = 0;
 };
 

@@ -21,8 +21,12 @@ bool PictureSlot::blocked(std::int64_t now_ns) const {
   return wanted_ && wanted_ != taken_ && (window_full() || sending_) && now_ns >= ready_ns();
 }
 
+bool PictureSlot::due(std::int64_t now_ns) const {
+  return waiting() && !window_full() && now_ns >= ready_ns();
+}
+
 std::optional<PictureKey> PictureSlot::take(std::int64_t now_ns) {
-  if (!waiting() || window_full() || now_ns < ready_ns()) return std::nullopt;
+  if (!due(now_ns)) return std::nullopt;
   const bool changed = taken_ && taken_->change != wanted_->change;
   const std::int64_t period_ns = std::max(period_ns_, least_period_ns_);
   // Measured from the time it was due, so that late ticks do not lower the rate.

@@ -30,6 +30,8 @@ class PictureSlot {
   /// The picture to draw now, which is then in flight. Empty while one is in flight, if the client
   /// already has this one, until the stream's period has passed, and while too many are unshown.
   [[nodiscard]] std::optional<PictureKey> take(std::int64_t now_ns);
+  /// True if take() would give a picture.
+  [[nodiscard]] bool due(std::int64_t now_ns) const;
   /// True if a picture is due, and waits because one before is still being sent, or because the
   /// client has not shown those before.
   [[nodiscard]] bool blocked(std::int64_t now_ns) const;

@@ -1,7 +1,6 @@
 #include "server/net/stream/picture_streams.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
@@ -12,11 +11,6 @@ namespace {
 
 using server::PictureRequest;
 
-/// Numbers of streams that are not subscribed any more are kept up to this count, so that a stream
-/// that comes back keeps its number.
-constexpr std::size_t kMaxKnownStreams = 1024;
-/// After this time a picture counts as shown.
-constexpr std::int64_t kShownByNs = 5'000'000'000;
 /// A view that was changed so recently is being moved.
 constexpr std::int64_t kViewMovesNs = 300'000'000;
 /// Pictures are not reduced below this quality, unless the client asks for it.
@@ -62,96 +56,6 @@ nlohmann::json labels_json(const PictureHeader& header,
 
 }  // namespace
 
-PictureStreams::StreamKey PictureStreams::key_of(const StreamRequest& request) {
-  return {request.run_id, request.name, request.camera, request.view};
-}
-
-void PictureStreams::subscribe(const SubscribeCommand& command) {
-  acknowledges_ = command.acknowledges;
-  std::vector<Stream> before = std::move(streams_);
-  streams_.clear();
-  for (const Stream& stream : before) sequences_[key_of(stream.request)] = stream.sequence;
-  for (const StreamRequest& requested : command.pictures) {
-    const auto kept = std::find_if(before.begin(), before.end(), [&](const Stream& stream) {
-      return key_of(stream.request) == key_of(requested);
-    });
-    Stream stream;
-    if (kept != before.end()) stream = std::move(*kept);
-    const auto [id, is_new] = ids_.emplace(key_of(requested), next_id_);
-    if (is_new) ++next_id_;
-    stream.id = id->second;
-    stream.sequence = is_new ? 0 : sequences_[key_of(requested)];
-    if (stream.request != requested) ++stream.change;
-    stream.request = requested;
-    stream.slot.set_max_hz(requested.max_hz);
-    stream.slot.set_limit_hz(limit_hz_);
-    stream.slot.set_window(acknowledges_ ? kWindow : 0);
-    // Pictures of an earlier subscription need not be shown any more.
-    if (kept == before.end() && stream.sequence > 0) stream.shown = stream.sequence - 1;
-    count_unshown(&stream);
-    streams_.push_back(std::move(stream));
-  }
-  forget_old_streams();
-}
-
-void PictureStreams::forget_old_streams() {
-  if (ids_.size() <= kMaxKnownStreams) return;
-  std::set<StreamKey> subscribed;
-  for (const Stream& stream : streams_) subscribed.insert(key_of(stream.request));
-  std::erase_if(ids_, [&](const auto& entry) { return !subscribed.contains(entry.first); });
-  std::erase_if(sequences_, [&](const auto& entry) { return !subscribed.contains(entry.first); });
-}
-
-void PictureStreams::count_unshown(Stream* stream) {
-  const std::uint32_t shown = stream->shown ? *stream->shown + 1 : 0;
-  stream->slot.set_unshown(static_cast<int>(stream->sequence - shown));
-}
-
-void PictureStreams::shown(const ShownCommand& command) {
-  for (const auto& [id, sequence] : command.pictures) {
-    for (Stream& stream : streams_) {
-      if (stream.id != id || sequence >= stream.sequence) continue;
-      stream.shown = std::max(stream.shown.value_or(0), sequence);
-      count_unshown(&stream);
-    }
-  }
-}
-
-Status PictureStreams::restart_video(const KeyCommand& command) {
-  for (Stream& stream : streams_) {
-    if (stream.id != command.stream_id) continue;
-    stream.key_wanted = true;
-    return {};
-  }
-  return Error{ErrorCode::kNotFound,
-               "key.id = " + std::to_string(command.stream_id) + ": is no subscribed stream"};
-}
-
-bool PictureStreams::reduction_changed() {
-  return std::exchange(reduction_told_, link_.reduction()) != link_.reduction();
-}
-
-Status PictureStreams::set_view(const ViewCommand& command, std::int64_t now_ns) {
-  if (!views_.contains(command.view) && views_.size() >= kMaxViews) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "view.view: " + std::to_string(kMaxViews) + " views exist, which is the limit"};
-  }
-  View& view = views_[command.view];
-  server::SceneSettings& settings = view.settings;
-  settings.mode = command.mode.value_or(settings.mode);
-  settings.azimuth_rad = command.azimuth_rad.value_or(settings.azimuth_rad);
-  settings.elevation_rad = command.elevation_rad.value_or(settings.elevation_rad);
-  settings.distance_m = command.distance_m.value_or(settings.distance_m);
-  settings.follow = command.follow.value_or(settings.follow);
-  settings.width_px = command.width_px.value_or(settings.width_px);
-  settings.height_px = command.height_px.value_or(settings.height_px);
-  settings.eye_world_m = command.eye_world_m.value_or(settings.eye_world_m);
-  settings.show = command.show.value_or(settings.show);
-  ++view.change;
-  view.changed_ns = now_ns;
-  return {};
-}
-
 std::uint64_t PictureStreams::change_of(const Stream& stream) const {
   std::uint64_t change = change_ + stream.change;
   if (kind_of(stream.request.name) != PictureRequest::Kind::kScene) return change;
@@ -159,27 +63,6 @@ std::uint64_t PictureStreams::change_of(const Stream& stream) const {
     change += view->second.change;
   }
   return change;
-}
-
-bool PictureStreams::set_limit_hz(std::optional<double> limit_hz) {
-  if (limit_hz_ == limit_hz) return false;
-  limit_hz_ = limit_hz;
-  for (Stream& stream : streams_) stream.slot.set_limit_hz(limit_hz);
-  return true;
-}
-
-void PictureStreams::restart(const std::string& run_id) {
-  for (Stream& stream : streams_) {
-    if (stream.request.run_id != run_id) continue;
-    stream.slot = PictureSlot(stream.request.max_hz);
-    stream.slot.set_limit_hz(limit_hz_);
-    stream.slot.set_window(acknowledges_ ? kWindow : 0);
-    if (stream.sequence > 0) stream.shown = stream.sequence - 1;
-    stream.ticket = 0;
-    stream.sent.reset();
-    stream.error_sent.clear();
-  }
-  show_again();
 }
 
 std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
@@ -261,17 +144,18 @@ void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const 
       0, stream->id, stream->video_sent, std::exchange(stream->key_wanted, false)};
 }
 
-void PictureStreams::request_one(Stream* stream,
+bool PictureStreams::request_one(Stream* stream,
                                  const std::vector<Instant>& instants,
                                  bool playing,
+                                 bool room,
                                  ViewerPort* port,
                                  std::int64_t now_ns) {
   const Instant* instant = find_instant(instants, stream->request.run_id);
-  if (instant == nullptr) return;
+  if (instant == nullptr) return false;
   auto request = request_of(*stream, *instant);
-  if (!request) return;
+  if (!request) return false;
   const std::int64_t others = add_others(*stream, instants, &*request);
-  if (stream->slot.window_full() && now_ns - stream->requested_ns > kShownByNs) {
+  if (stream->slot.window_full() && now_ns - stream->requested_ns > SendWindow::kArrivedByNs) {
     // Its pictures were lost, or the client does not report them.
     stream->shown = stream->sequence - 1;
     count_unshown(stream);
@@ -279,8 +163,14 @@ void PictureStreams::request_one(Stream* stream,
   stream->moving = playing || view_moves(*stream, now_ns);
   const bool full = !stream->moving && stream->reduced;
   stream->slot.want({instant->frame, change_of(*stream), others, full});
+  const std::size_t bytes = expected_bytes(*stream);
+  if (acknowledges_ && stream->slot.due(now_ns)) {
+    if (!room || !window_.has_room(bytes)) return true;
+    window_.reserve(stream->id, bytes, now_ns);
+  }
   const auto key = stream->slot.take(now_ns);
-  if (!key) return;
+  if (!key) return false;
+  stream->still = !stream->moving;
   stream->ticket = ++tickets_;
   stream->requested_ns = now_ns;
   stream->live = instant->live;
@@ -290,6 +180,20 @@ void PictureStreams::request_one(Stream* stream,
   // So that the same picture is not requested once more.
   if (full) stream->reduced = was_reduced;
   port->draw({stream->id, stream->ticket}, *request);
+  return false;
+}
+
+std::size_t PictureStreams::expected_bytes(const Stream& stream) {
+  return stream.moving && stream.moving_bytes > 0 ? stream.moving_bytes : stream.still_bytes;
+}
+
+std::vector<PictureStreams::Stream*> PictureStreams::in_turn() {
+  std::vector<Stream*> streams;
+  for (Stream& stream : streams_) streams.push_back(&stream);
+  std::stable_sort(streams.begin(), streams.end(), [](const Stream* a, const Stream* b) {
+    return a->requested_ns < b->requested_ns;
+  });
+  return streams;
 }
 
 void PictureStreams::pump(const std::vector<Instant>& instants,
@@ -298,14 +202,21 @@ void PictureStreams::pump(const std::vector<Instant>& instants,
                           std::int64_t now_ns) {
   bool moving = false;
   bool blocked = false;
+  bool held = false;
+  bool waits = false;
   view_moved_ = false;
-  for (Stream& stream : streams_) {
-    request_one(&stream, instants, playing, port, now_ns);
-    moving = moving || stream.moving;
-    blocked = blocked || (stream.moving && stream.slot.blocked(now_ns));
-    view_moved_ = view_moved_ || view_moves(stream, now_ns);
+  for (Stream* stream : in_turn()) {
+    // While one waits for room, those after it wait too, so that a large one gets its turn.
+    const bool room = !held;
+    held = request_one(stream, instants, playing, room, port, now_ns) || held;
+    waits = waits || (held && window_.link_is_full(expected_bytes(*stream)));
+    moving = moving || stream->moving;
+    blocked = blocked || (stream->moving && (waits || stream->slot.blocked(now_ns)));
+    view_moved_ = view_moved_ || view_moves(*stream, now_ns);
   }
-  if (acknowledges_) link_.note(moving, blocked, now_ns);
+  if (!acknowledges_) return;
+  window_.note(waits, now_ns);
+  link_.note(moving, blocked, now_ns);
 }
 
 PictureStreams::Stream* PictureStreams::find(const PictureTicket& ticket) {
@@ -325,6 +236,7 @@ void PictureStreams::ready(const PictureTicket& ticket,
   const bool same = picture && stream->sent == shown;
   if (!picture || same) {
     if (!picture) tell_error(stream, picture.error(), port);
+    window_.release(stream->id);
     stream->slot.done();
     stream->ticket = 0;
     return;
@@ -337,6 +249,9 @@ void PictureStreams::ready(const PictureTicket& ticket,
   header.stream_id = stream->id;
   header.sequence = stream->sequence++;
   count_unshown(stream);
+  const std::size_t bytes = picture->bytes->size();
+  (stream->still ? stream->still_bytes : stream->moving_bytes) = bytes;
+  window_.sent(stream->id, header.sequence, bytes);
   header.frame = picture->frame;
   header.t_ns = picture->t_ns;
   header.width_px = static_cast<std::uint16_t>(picture->width_px);

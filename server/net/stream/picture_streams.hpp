@@ -14,6 +14,7 @@
 #include "server/net/stream/client_message.hpp"
 #include "server/net/stream/link_meter.hpp"
 #include "server/net/stream/picture_slot.hpp"
+#include "server/net/stream/send_window.hpp"
 #include "server/net/stream/viewer_port.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -35,8 +36,9 @@ class PictureStreams {
     std::string alignment = server::kRecordedAlignment;  ///< of the estimates in scenes
   };
 
-  /// Pictures that a client who acknowledges may have got and not shown.
-  static constexpr int kWindow = 2;
+  /// Pictures of a stream that a client who acknowledges may have got and not shown. Several, so
+  /// that a long round trip does not limit the rate; SendWindow limits their bytes.
+  static constexpr int kWindow = 8;
 
   /// Replaces the set of streams. A stream that stays, or comes back later, keeps its number; one
   /// that stays unchanged is not sent again.
@@ -87,18 +89,27 @@ class PictureStreams {
     std::optional<PictureKey> sent;
     std::optional<std::uint32_t> shown;  ///< sequence number of the newest that the client shows
     std::int64_t requested_ns = 0;       ///< when the newest was requested
-    std::uint64_t video_sent = 0;        ///< video pictures
-    bool key_wanted = false;             ///< the client lost one
+    bool still = true;                   ///< the one requested last was to rest
+    std::size_t still_bytes = SendWindow::kLeastBytes;  ///< size of the last one that rests
+    std::size_t moving_bytes = 0;  ///< size of the last one that moves; 0 = none yet
+    std::uint64_t video_sent = 0;  ///< video pictures
+    bool key_wanted = false;       ///< the client lost one
     std::string error_sent;
   };
   Stream* find(const PictureTicket& ticket);
   std::optional<server::PictureRequest> request_of(const Stream& stream,
                                                    const Instant& instant) const;
-  void request_one(Stream* stream,
+  /// The size of its next picture, by the last one.
+  static std::size_t expected_bytes(const Stream& stream);
+  /// @return true if its picture is due, but waits for room on the way to the client
+  bool request_one(Stream* stream,
                    const std::vector<Instant>& instants,
                    bool playing,
+                   bool room,
                    ViewerPort* port,
                    std::int64_t now_ns);
+  /// Those that were not requested for the longest time first.
+  std::vector<Stream*> in_turn();
   /// Reduces a moving picture, and chooses its coding.
   void fit_to_link(Stream* stream, server::PictureRequest* request) const;
   [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
@@ -131,6 +142,7 @@ class PictureStreams {
   std::optional<double> limit_hz_;
   bool acknowledges_ = false;
   LinkMeter link_;
+  SendWindow window_;
   int reduction_told_ = 0;
   bool view_moved_ = false;  ///< in the last pump
   std::uint64_t change_ = 0;

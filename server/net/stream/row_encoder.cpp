@@ -7,6 +7,7 @@
 
 #include "server/record/rows/vehicle_rows.hpp"
 #include "server/timeline/estimate_errors.hpp"
+#include "server/timeline/scale_errors.hpp"
 
 namespace overfly::net {
 namespace {
@@ -155,6 +156,11 @@ json estimate_columns(const server::RunTimeline& timeline,
   add_pose_columns(
       rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
   add_error_columns(server::errors_of(timeline, estimator, rows, alignment), &columns);
+  columns["error_scale_percent"] =
+      column(server::scale_errors_of(timeline, estimator, rows, alignment),
+             [](const std::optional<double>& error) {
+               return error ? rounded(100.0 * *error, 1e6) : json(nullptr);
+             });
   const std::vector<std::string> counters = timeline.counter_names(estimator);
   for (std::size_t i = 0; i < counters.size(); ++i) {
     columns[counter_column(counters[i])] = column(rows, [&](const Row& row) {
@@ -195,6 +201,25 @@ json estimator_statuses_json(const server::RunTimeline& timeline) {
   return statuses;
 }
 
+namespace {
+
+json optional_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : json(nullptr);
+}
+
+json results_json(const std::vector<server::EstimatorResult>& results) {
+  json list = json::array();
+  for (const server::EstimatorResult& result : results) {
+    list.push_back({{"estimator", result.estimator},
+                    {"outcome", evaluation::to_string(result.outcome)},
+                    {"position_rmse_m", optional_number(result.position_rmse_m)},
+                    {"position_rmse_percent", optional_number(result.position_rmse_percent)}});
+  }
+  return list;
+}
+
+}  // namespace
+
 json run_json(const server::RunInfo& info) {
   return {{"id", info.id},
           {"scenario", info.scenario},
@@ -216,6 +241,14 @@ json run_json(const server::RunInfo& info) {
           {"left_s", info.left_s ? json(std::round(*info.left_s * 10.0) / 10.0) : json(nullptr)},
           {"notice", info.notice.empty() ? json(nullptr) : json(info.notice)},
           {"world_change", info.world_change.empty() ? json(nullptr) : json(info.world_change)}};
+}
+
+json listed_run_json(const server::RunInfo& info) {
+  json run = run_json(info);
+  run["results"] = results_json(info.results);
+  run["tags"] = info.tags;
+  run["note"] = info.note;
+  return run;
 }
 
 }  // namespace overfly::net

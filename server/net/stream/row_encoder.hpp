@@ -34,5 +34,7 @@ namespace overfly::net {
 [[nodiscard]] nlohmann::json estimator_statuses_json(const server::RunTimeline& timeline);
 
 [[nodiscard]] nlohmann::json run_json(const server::RunInfo& info);
+/// With `results`, `tags` and `note`, which are read from the folder of a run that has ended.
+[[nodiscard]] nlohmann::json listed_run_json(const server::RunInfo& info);
 
 }  // namespace overfly::net

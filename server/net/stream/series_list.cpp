@@ -42,6 +42,7 @@ constexpr Series kEstimate[] = {
     {"error_across_m", "error to the right", "m", "position_error_parts"},
     {"error_up_m", "error up", "m", "position_error_parts"},
     {"error_rotation_deg", "rotation error", "deg", "rotation_error"},
+    {"error_scale_percent", "scale error over 100 m", "%", "scale_error"},
     {"latency_ms", "latency", "ms", "latency"}};
 
 constexpr Series kVehicle[] = {{"battery_v", "battery", "V", "battery_voltage"},

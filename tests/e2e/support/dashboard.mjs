@@ -1,5 +1,6 @@
 // The dashboard as a viewer uses it. Everything waits for a condition, never for a time.
 import { mkdirSync } from 'node:fs';
+import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import path from 'node:path';
 
@@ -135,6 +136,7 @@ export class Dashboard {
       const timeline = document.querySelector('[data-panel=timeline]');
       return (
         timeline.dataset.playing === 'false' &&
+        timeline.dataset.frame !== undefined &&
         names.every(
           (name) =>
             document.querySelector(`[data-panel="${name}"]`)?.dataset.frame ===
@@ -211,7 +213,7 @@ export class Dashboard {
   async untilPictured(panel) {
     for (let tries = 0; (await this.picture(panel)).deviation <= 1; ++tries) {
       if (tries === 100) throw new Error(`the picture of ${panel} stays empty`);
-      await this.page.waitForTimeout(100);
+      await pause(100);
     }
   }
 
@@ -224,7 +226,7 @@ export class Dashboard {
       const { digest } = await this.picture(panel);
       same = digest === before ? same + 1 : 0;
       before = digest;
-      await this.page.waitForTimeout(150);
+      await pause(150);
     }
   }
 
@@ -232,7 +234,7 @@ export class Dashboard {
     const end_ms = Date.now() + kPatience_ms;
     while ((await this.picture(panel)).digest === digest) {
       if (Date.now() > end_ms) throw new Error(`the picture of ${panel} stays the same`);
-      await this.page.waitForTimeout(50);
+      await pause(50);
     }
   }
 

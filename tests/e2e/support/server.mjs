@@ -51,6 +51,7 @@ export async function startServer({
   data = [],
   links = [],
   cameras = [],
+  sweeps = path.join(path.dirname(runs), 'sweeps'),
   allowCommands = false,
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
@@ -58,6 +59,7 @@ export async function startServer({
   args.push('--scenarios', scenarios, '--web', kWeb);
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
   args.push('--saved-scenarios', path.join(path.dirname(runs), 'saved'));
+  args.push('--sweeps', sweeps);
   for (const folder of data) args.push('--data', folder);
   for (const link of links) args.push('--allow-link', link);
   for (const camera of cameras) args.push('--allow-camera', camera);
@@ -89,6 +91,10 @@ export async function startServer({
     token: searchParams.get('token'),
     port: Number(bound),
     output: () => output,
+    async kill() {
+      child.kill('SIGKILL');
+      await exited;
+    },
     async stop() {
       const late = setTimeout(() => child.kill('SIGKILL'), kStop_ms);
       child.kill('SIGTERM');

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/time.hpp"
@@ -65,11 +66,9 @@ int warnings(const std::vector<std::string>& log) {
 }
 
 TEST(FocalCheck, WarnsOfAFocalLengthThatIsTenPercentOff) {
-  for (const double relief_m : {0.0, 15.0}) {
-    for (const double ratio : {0.9, 1.1}) {
-      const std::vector<std::string> log = log_of({relief_m, ratio, {}});
-      EXPECT_EQ(warnings(log), 1) << relief_m << " m, " << ratio;
-    }
+  for (const auto& [relief_m, ratio] : {std::pair(0.0, 0.9), std::pair(15.0, 1.1)}) {
+    const std::vector<std::string> log = log_of({relief_m, ratio, {}});
+    EXPECT_EQ(warnings(log), 1) << relief_m << " m, " << ratio;
   }
 }
 

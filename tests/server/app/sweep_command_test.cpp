@@ -1,13 +1,17 @@
 // overfly sweep: a whole sweep by the program itself, cancelled and killed in between.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/server/app/command_line_fixture.hpp"
 #include "tests/server/app/program.hpp"
@@ -102,6 +106,86 @@ TEST_F(SweepCommand, ContinuesAfterItWasKilled) {
   expect_continued("s3");
 }
 
+/// The process of a worker, and the folder with its output.
+class Worker {
+ public:
+  explicit Worker(const std::string& sweep)
+      : program_({"sweep", "work", sweep, "--jobs", "1", "--idle-s", "30"}, folder_.path()) {}
+  RunningProgram* operator->() { return &program_; }
+
+ private:
+  TemporaryFolder folder_;
+  RunningProgram program_;
+};
+
+TEST_F(SweepCommand, IsFlownByWorkersThatComeAndGo) {
+  SKIP_WITHOUT_EGL();
+  RunningProgram sweep({"sweep", file(), "--out", path("s7"), "--executor", "folder"}, path(""));
+  while (sweep.running() && !fs::exists(path("s7/sweep.json"))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  Worker first(path("s7"));
+  if (!wait_for_lines(sweep, "s7", 1)) FAIL() << sweep.err() << first->err();
+  first->signal(SIGTERM);
+  EXPECT_EQ(first->wait(), 3) << first->err();
+  Worker second(path("s7"));
+  EXPECT_EQ(second->wait(), 0) << second->err();
+  EXPECT_THAT(second->out(), HasSubstr("delivered"));
+  EXPECT_EQ(sweep.wait(), 0) << sweep.err();
+  EXPECT_THAT(sweep.err(), HasSubstr("workers fly it: overfly sweep work " + path("s7")));
+  expect_continued("s7");
+}
+
+/// A file system of its own that can be filled.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
+    fs::create_directories(folder_);
+    mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, "size=64m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  [[nodiscard]] bool mounted() const { return mounted_; }
+  void fill() const {
+    std::ofstream filler(folder_ + "/filler", std::ios::app);
+    const std::string piece(4096, 'x');
+    while (filler << piece << std::flush) {
+    }
+  }
+  void free() const { fs::remove(folder_ + "/filler"); }
+
+ private:
+  std::string folder_;
+  bool mounted_ = false;
+};
+
+/// Nothing is lost: flights that failed for it are flown again, finished ones are delivered later.
+TEST_F(SweepCommand, GoesOnWhenAFullDiskHasSpaceAgain) {
+  SKIP_WITHOUT_EGL();
+  const SmallDisk disk(path("disk"));
+  if (!disk.mounted()) GTEST_SKIP() << "mounting a small file system needs root";
+  RunningProgram sweep({"sweep", file(), "--out", path("disk/s"), "--executor", "folder"},
+                       path(""));
+  while (sweep.running() && !fs::exists(path("disk/s/sweep.json"))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  Worker worker(path("disk/s"));
+  if (!wait_for_lines(sweep, "disk/s", 1)) FAIL() << sweep.err() << worker->err();
+  while (worker->running() &&
+         worker->err().find("No space left on device; tried again") == std::string::npos) {
+    disk.fill();  // Again: a flight that ends frees some.
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_TRUE(worker->running()) << worker->err();
+  disk.free();
+  // The sweep command ends if it was it that could not write; otherwise it goes on by itself.
+  if (sweep.wait() != 0) {
+    EXPECT_THAT(sweep.err(), HasSubstr("No space left on device"));
+  }
+  expect_continued("disk/s");
+}
+
 TEST_F(SweepCommand, ComparesTwoSweepsFlightByFlight) {
   SKIP_WITHOUT_EGL();
   for (const char* out : {"s5", "s6"}) ASSERT_EQ(overfly_program(arguments(out)).exit_code, 0);
@@ -133,6 +217,27 @@ TEST_F(SweepCommand, ComparesTwoSweepsFlightByFlight) {
       overfly_program({"compare", path("s5"), path("absent"), "--fail-if", "success_rate < 1"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("no flight was completed in both"));
+}
+
+TEST_F(SweepCommand, NamesOptionsThatDoNotFitTogether) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"sweep", "--out", path("s8")}, "sweep: a sweep file is required"},
+      {{"sweep", file()}, "--out: is required"},
+      {{"sweep", file(), "--out", path("s8"), "--jobs", "257"},
+       "--jobs = 257: must be in [0, 256] without Slurm"},
+      {{"sweep", file(), "--out", path("s8"), "--executor", "folder", "--jobs", "2"},
+       "--jobs: is an option of the workers"},
+      {{"sweep", file(), "--out", path("s8"), "--slurm-option=--partition=x"},
+       "--slurm-option: needs --executor slurm"},
+      {{"sweep", file(), "--out", path("s8"), "--lease-s", "20"},
+       "--lease-s: needs --executor folder or slurm"},
+      {{"sweep", "work", path("absent")}, "is no folder of a sweep (sweep.json is missing)"}};
+  for (const auto& [words, message] : cases) {
+    const Outcome outcome = overfly_program(words);
+    EXPECT_EQ(outcome.exit_code, 2) << message;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
+  EXPECT_FALSE(fs::exists(path("s8")));
 }
 
 TEST_F(SweepCommand, NamesWhatIsInvalid) {

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 
+#include "server/experiments/envelope/envelope.hpp"
+#include "server/experiments/sweep_folders.hpp"
 #include "server/experiments/sweep_summary.hpp"
 #include "server/record/run_lock.hpp"
-#include "tests/server/support/server_fixture.hpp"
+#include "tests/server/experiments/fly_sweep_fixture.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -20,72 +22,6 @@ using overfly::testing::TemporaryFolder;
 using overfly::testing::write_text;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// A program in place of overfly: `program run SCENARIO --out FOLDER --quiet` copies a run that was
-/// completed before, and writes a line to `calls`.
-class FlySweep : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    shared_ = new TemporaryFolder;
-    const auto run =
-        run_scenario(server::testing::small_scenario({R"(estimators=[{"name":"p","type":"perfect"},
-                                                        {"name":"q","type":"perfect"}])"}),
-                     server::testing::options_for(shared_->path() / "run"));
-    ASSERT_TRUE(run.ok()) << run.error().message;
-  }
-  static void TearDownTestSuite() {
-    delete shared_;
-    shared_ = nullptr;
-  }
-
-  /// @param flight  what the program does before it copies the run
-  void write_program(const std::string& flight = "") {
-    write_text(program(),
-               "#!/bin/sh\nset -e\necho \"$2\" >> '" + calls().string() + "'\n" + flight +
-                   "\ncp -r '" + (shared_->path() / "run").string() + "' \"$4\"\n");
-    fs::permissions(program(), fs::perms::owner_all);
-  }
-  Sweep sweep(const std::string& fields) {
-    const fs::path file = own_.path() / "sweep.json";
-    const fs::path scenario = fs::path(OVERFLY_SOURCE_DIR) / "scenarios/course.json";
-    write_text(file,
-               R"({"format_version": 1, "scenario": ")" + scenario.string() +
-                   R"(", "estimators": [{"name": "p", "type": "perfect"}], )" + fields + "}");
-    Result<Sweep> loaded = load_sweep(file);
-    EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().message);
-    return std::move(*loaded);
-  }
-  Result<FlownSweep> fly(const Sweep& sweep, std::size_t jobs = 1) {
-    SweepOptions options;
-    options.folder = folder();
-    options.program = program();
-    options.jobs = jobs;
-    options.cancel = &cancel_;
-    options.warn = [this](const std::string& text) { warnings_.push_back(text); };
-    options.progress = [this](const SweepProgress& progress) { progress_ = progress; };
-    return fly_sweep(sweep, options);
-  }
-  [[nodiscard]] std::size_t flights() const {
-    if (!fs::exists(calls())) return 0;
-    const std::string text = read_text(calls());
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  }
-  [[nodiscard]] fs::path folder() const { return own_.path() / "out"; }
-  [[nodiscard]] fs::path program() const { return own_.path() / "program"; }
-  [[nodiscard]] fs::path calls() const { return own_.path() / "calls"; }
-
-  std::atomic<bool> cancel_{false};
-  std::vector<std::string> warnings_;
-  SweepProgress progress_;
-
- private:
-  static TemporaryFolder* shared_;
-  TemporaryFolder own_;
-};
-TemporaryFolder* FlySweep::shared_ = nullptr;
-
-constexpr const char* kTwoSpeeds =
-    R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10, 25]}])";
 
 TEST_F(FlySweep, FliesEachCellOnceAndNeverAgain) {
   write_program();
@@ -108,6 +44,11 @@ TEST_F(FlySweep, FliesEachCellOnceAndNeverAgain) {
   const Json scenario =
       Json::parse(read_text(folder() / "scenarios" / (rows[1].runs[0].substr(5) + ".json")));
   EXPECT_EQ(scenario.at("flight").at("course").at("airspeed_m_s"), 25);
+
+  const Json entry = sweep_entry(own_folder(), "out").value();
+  EXPECT_EQ(entry.at("progress").at("passed"), 4);
+  EXPECT_EQ(entry.at("progress").at("most"), 4);
+  EXPECT_EQ(entry.at("axes").at(0).at("values"), Json::array({10, 25}));
 
   ASSERT_TRUE(fly(two).ok());
   EXPECT_EQ(flights(), 4U) << "nothing is due";
@@ -251,6 +192,53 @@ TEST_F(FlySweep, TheTableShowsAxesWithUnits) {
   EXPECT_THAT(table, HasSubstr("| Air\\|speed [m/s] | estimator |"));
   EXPECT_THAT(table, HasSubstr("| 10 | p | 1 | 100 [21, 100] | 0.000 |"));
   EXPECT_THAT(table, HasSubstr("1 COMPLETED"));
+}
+
+/// The program of the test copies a run that was lost for every speed above 20 m/s.
+TEST_F(FlySweep, TheEnvelopeFliesOnlyTheCellsAtTheBorder) {
+  const fs::path lost = own_folder() / "lost";
+  write_program("if grep -q '\"airspeed_m_s\": *\\(2[1-9]\\|3\\)' \"$2\"; then cp -r '" +
+                lost.string() + "' \"$4\"; exit; fi");
+  copy_run(lost);
+  const std::string metrics = read_text(lost / "metrics.json");
+  Json changed = Json::parse(metrics);
+  changed["estimators"]["p"]["outcome"] = "LOST";
+  write_text(lost / "metrics.json", changed.dump());
+  const Sweep grid = sweep(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "label": "Airspeed", "unit": "m/s",
+                   "from": 15, "to": 30, "step": 1},
+                  {"path": "seed", "values": [1, 2, 3]}])");
+  EnvelopeOptions options;
+  options.flights.folder = folder();
+  options.flights.program = program();
+  options.axis = "flight.course.airspeed_m_s";
+  const auto found = find_envelope(grid, options);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_EQ(found->cells, 48U);
+  EXPECT_EQ(found->cells_needed, 6U + 2U + 2U);
+  EXPECT_EQ(flights(), found->cells_needed);
+  ASSERT_EQ(found->lines.size(), 3U);
+  for (const EnvelopeLine& line : found->lines) {
+    EXPECT_EQ(line.survives.value(), 20) << line.at;
+    EXPECT_EQ(line.fails.value(), 21) << line.at;
+  }
+  EXPECT_THAT(markdown_from(grid, *found), HasSubstr("| 2 | 20.0 m/s | 21.0 m/s | |"));
+  EXPECT_EQ(json_from(*found).at("lines").at(2).at("at"), Json({{"seed", 3}}));
+  ASSERT_TRUE(find_envelope(grid, options).ok());
+  EXPECT_EQ(flights(), found->cells_needed) << "nothing is flown again";
+
+  options.axis = "seed.x";
+  EXPECT_THAT(
+      find_envelope(grid, options).error().message,
+      HasSubstr("axis = seed.x: must be an axis of the sweep (flight.course.airspeed_m_s, seed)"));
+  options.axis = "flight.course.airspeed_m_s";
+  options.estimator = "none";
+  EXPECT_THAT(find_envelope(grid, options).error().message, HasSubstr("estimator = none"));
+  const Sweep skipping = sweep(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [15, 25]}, {"path": "seed", "values": [1, 2]}],
+         "skip": [{"flight.course.airspeed_m_s": 25, "seed": 2}])");
+  EXPECT_THAT(find_envelope(skipping, options).error().message,
+              HasSubstr("skip: must leave out no cell"));
 }
 
 }  // namespace

@@ -56,6 +56,19 @@ TEST_F(LinkMeterTest, WaitsLongerAfterEachStepBackThatWasTooEarly) {
   EXPECT_LE(steps_back, 10) << "every three seconds would be about 60";
 }
 
+TEST_F(LinkMeterTest, RestoresQuicklyOnceAStepBackHoldsThatWasTooEarlyBefore) {
+  // For minutes only the smallest pictures pass, so that the pauses have become long.
+  for (int second = 0; second < 90; ++second) {
+    play(1.0, meter_.reduction() < LinkMeter::kMostReduction ? 0.8 : 0.0);
+  }
+  while (meter_.reduction() < LinkMeter::kMostReduction) play(1.0, 0.8);
+  int seconds = 0;
+  for (; meter_.reduction() == LinkMeter::kMostReduction; ++seconds) play(1.0, 0.0);
+  EXPECT_GT(seconds, 10) << "the step back was too early several times";
+  for (seconds = 0; meter_.reduction() > 0 && seconds < 100; ++seconds) play(1.0, 0.0);
+  EXPECT_LE(seconds, 15) << "for the other three steps";
+}
+
 TEST_F(LinkMeterTest, JudgesNothingWhilePicturesRest) {
   for (int i = 0; i < 1000; ++i) meter_.note(false, true, now_ns_ += kTickNs);
   EXPECT_EQ(meter_.reduction(), 0);

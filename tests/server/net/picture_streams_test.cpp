@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/net/stream/picture_codec.hpp"
 #include "tests/server/net/fake_port.hpp"
@@ -46,7 +47,7 @@ class PictureStreamsTest : public ::testing::Test {
     picture.height_px = 48;
     picture.coding = coding;
     picture.key = key;
-    picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(3, std::uint8_t{1});
+    picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes_, std::uint8_t{1});
     streams_.ready(ticket, picture, &port_);
     streams_.sent(ticket);
     const auto header = decode_picture_header(port_.binaries.back());
@@ -79,6 +80,7 @@ class PictureStreamsTest : public ::testing::Test {
   PictureStreams streams_;
   std::int64_t frame_ = 0;
   std::int64_t now_ns_ = 1'000'000'000;
+  std::size_t bytes_ = 3;  ///< of a picture
 };
 
 TEST_F(PictureStreamsTest, AsksForVideoOnceAPictureIsThereAndMoves) {
@@ -184,9 +186,57 @@ TEST_F(PictureStreamsTest, IgnoresPicturesThatWereNeverSent) {
   ASSERT_TRUE(next(true));
   const PictureHeader header = send();
   streams_.shown({{{header.stream_id, 4'000'000'000U}, {77, 0}}});
-  ASSERT_TRUE(next(true));
-  send();
-  EXPECT_FALSE(next(true)) << "two are on the way";
+  for (int i = 1; i < PictureStreams::kWindow; ++i) {
+    ASSERT_TRUE(next(true));
+    send();
+  }
+  EXPECT_FALSE(next(true)) << "none of them has been shown";
+}
+
+TEST_F(PictureStreamsTest, HasFewBytesOnTheWayToAClientThatAcknowledges) {
+  subscribe(false, true);
+  bytes_ = SendWindow::kFirstBytes / 2;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(next(true));
+    send();
+  }
+  EXPECT_FALSE(next(true));
+  EXPECT_FALSE(next(false)) << "nor one that rests";
+  show_all();
+  EXPECT_TRUE(next(true));
+}
+
+TEST_F(PictureStreamsTest, ReducesNothingOnAWayThatIsOnlyLong) {
+  subscribe(false, true);
+  bytes_ = 5'000;
+  int sent = 0;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    if (next(true)) {
+      send();
+      ++sent;
+    }
+    // It is reported 200 ms later.
+    if (i >= 5) streams_.shown({{{1, i - 5}}});
+  }
+  EXPECT_EQ(streams_.pictures_json()["reduction"], 0);
+  EXPECT_GE(sent, 495) << "of 500 at the stream's rate";
+}
+
+TEST_F(PictureStreamsTest, SendsStreamsInTurnWhileThereIsLittleRoom) {
+  streams_.subscribe({{{"r", "camera"}, {"r", "depth"}, {"r", "scene"}}, true});
+  bytes_ = SendWindow::kFirstBytes;
+  std::vector<std::uint32_t> order;
+  for (int i = 0; i < 60 && order.size() < 6; ++i) {
+    if (!next(true)) continue;
+    ASSERT_EQ(port_.drawn.size(), order.empty() ? 2U : 1U) << "sizes are not known at first";
+    for (const auto& [ticket, request] : std::exchange(port_.drawn, {})) {
+      port_.drawn = {{ticket, request}};
+      send();
+      order.push_back(ticket.stream_id);
+    }
+    for (const std::uint32_t id : order) streams_.shown({{{id, 0}, {id, 1}, {id, 2}}});
+  }
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{1, 2, 3, 1, 2, 3}));
 }
 
 TEST_F(PictureStreamsTest, SendsAllToAClientThatDoesNotAcknowledge) {

@@ -40,6 +40,7 @@ TestServer::TestServer(const net::ServerLimits& limits, const std::string& token
         net::ServerOptions options;
         options.limits = limits;
         options.token = token;
+        options.program = "/bin/false";  // Sweeps must not fly this program of tests.
         return options;
       }()) {}
 
@@ -66,6 +67,7 @@ TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOpti
   options.runs_folder = folder() / "runs";
   options.scenarios_folder = scenarios;
   options.saved_scenarios_folder = folder() / "saved";
+  options.sweeps_folder = folder() / "sweeps";
   options.data_folders = {world_folder, logs, uploads};
   server_options.uploads_folder = uploads;
   options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles)

@@ -9,6 +9,7 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_lock.hpp"
+#include "server/runs/run_notes.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
@@ -69,6 +70,71 @@ TEST_F(RunListTest, SharesWhatHasNotChanged) {
   EXPECT_EQ(listed(), after) << "not read again";
   change_manifest("older", "title", "Another title");
   EXPECT_NE(listed(), after);
+}
+
+TEST_F(RunListTest, ShowsHowTheEstimatorsPerformed) {
+  const std::string id = fly(*manager());
+  const auto runs = manager();
+  nlohmann::json metrics = read_json(metrics_file(folder_of(id))).value();
+  nlohmann::json& estimator = metrics.at("estimators").at("p");
+  estimator["outcome"] = "LOST";
+  estimator.at("alignments").at("init_scale")["position_rmse_m"] = 3.5;
+  metrics.at("flight")["path_length_m"] = 700.0;
+  ASSERT_TRUE(write_json(metrics_file(folder_of(id)), metrics).ok());
+  change_manifest(id, "title", "read again");
+  const std::vector<EstimatorResult> results = runs->run(id).value().results;
+  ASSERT_EQ(results.size(), 1U);
+  EXPECT_EQ(results[0].estimator, "p");
+  EXPECT_EQ(results[0].outcome, evaluation::Outcome::kLost);
+  EXPECT_DOUBLE_EQ(results[0].position_rmse_m.value(), 3.5);
+  EXPECT_DOUBLE_EQ(results[0].position_rmse_percent.value(), 0.5);
+  overfly::testing::write_text(metrics_file(folder_of(id)), "{");
+  change_manifest(id, "title", "and again");
+  EXPECT_THAT(runs->run(id).value().problem, ::testing::HasSubstr("metrics.json"));
+  EXPECT_TRUE(runs->run(id).value().results.empty());
+}
+
+TEST_F(RunListTest, ShowsWhatPeopleWroteAboutARun) {
+  const std::string id = fly(*manager());
+  const auto runs = manager();
+  EXPECT_TRUE(runs->run(id).value().tags.empty());
+  const RunNotes notes{{"baseline", "for the paper"}, "Wind from the west.\nFly again."};
+  ASSERT_TRUE(runs->set_notes(id, notes).ok());
+  EXPECT_EQ(runs->runs().front()->tags, notes.tags);
+  EXPECT_EQ(runs->run(id).value().note, notes.note);
+  ASSERT_TRUE(write_notes(folder_of(id), {{"by another program"}, ""}).ok());
+  EXPECT_THAT(runs->runs().front()->tags, ElementsAre("by another program"));
+  ASSERT_TRUE(runs->set_notes(id, {}).ok());
+  EXPECT_FALSE(fs::exists(notes_file(folder_of(id))));
+  EXPECT_TRUE(runs->run(id).value().tags.empty());
+  overfly::testing::write_text(notes_file(folder_of(id)), R"({"tags":[""],"note":""})");
+  EXPECT_THAT(runs->run(id).value().problem, ::testing::HasSubstr("notes.json: tags.0: must"));
+  EXPECT_EQ(runs->run(id).value().status, RunStatus::kCompleted);
+  EXPECT_EQ(runs->set_notes("nobody", {}).error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(runs->set_notes("../x", {}).error().code, ErrorCode::kNotFound);
+}
+
+TEST(RunNotes, AreRefusedBeyondTheirLimits) {
+  const overfly::testing::TemporaryFolder folder;
+  const std::vector<std::pair<RunNotes, std::string>> refused = {
+      {{std::vector<std::string>(17, "t"), ""}, "tags: must have at most 16"},
+      {{{"a", ""}, ""}, "tags.1: must have 1 to 40 bytes"},
+      {{{std::string(41, 'a')}, ""}, "tags.0: must have 1 to 40 bytes"},
+      {{{"a,b"}, ""}, "tags.0: must have no comma"},
+      {{{" a"}, ""}, "tags.0: must have no comma"},
+      {{{"a\nb"}, ""}, "tags.0: must have no comma"},
+      {{{"a", "a"}, ""}, "tags.1: must differ"},
+      {{{}, std::string(4001, 'x')}, "note: must have at most 4000 bytes"},
+      {{{}, "a\x1b[31m"}, "note: must have no control characters"},
+  };
+  for (const auto& [notes, message] : refused) {
+    const Status status = write_notes(folder.path(), notes);
+    ASSERT_FALSE(status.ok()) << message;
+    EXPECT_EQ(status.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(status.error().message, ::testing::HasSubstr(message));
+  }
+  EXPECT_FALSE(fs::exists(notes_file(folder.path())));
+  EXPECT_EQ(read_notes(folder.path()).value(), RunNotes{});
 }
 
 /// Files that grow with the flight are not opened: opening a pipe would block.

@@ -25,7 +25,14 @@ import type {
   WorldEntry,
 } from '../protocol/mission_types';
 import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
-import type { Json, JsonObject, Manifest, Run, ScenarioEntry } from '../protocol/rest_types';
+import type {
+  Differences,
+  Json,
+  JsonObject,
+  Manifest,
+  Run,
+  ScenarioEntry,
+} from '../protocol/rest_types';
 import type { SensorCurves } from '../protocol/sensor_types';
 
 import type { Upload } from './upload';
@@ -183,6 +190,16 @@ export class RestClient {
 
   async cancelRun(id: string): Promise<void> {
     await this.call('POST', `/runs/${encodeURIComponent(id)}/cancel`);
+  }
+
+  /** Replaces what people wrote about a run. */
+  async setNotes(id: string, tags: readonly string[], note: string): Promise<void> {
+    await this.call('PUT', `/runs/${encodeURIComponent(id)}/notes`, { tags, note });
+  }
+
+  async differences(runs: readonly string[], signal: AbortSignal): Promise<Differences> {
+    const place = `/differences?runs=${encodeURIComponent(runs.join(','))}`;
+    return (await this.call('GET', place, undefined, {}, signal)) as Differences;
   }
 
   async deleteRun(id: string): Promise<void> {

@@ -1,5 +1,5 @@
 // Messages of the WebSocket /api/v1/stream; docs/PROTOCOL.md is the contract.
-import type { EstimatorStatus, Metrics, Run } from './rest_types';
+import type { EstimatorStatus, Metrics, StreamedRun } from './rest_types';
 
 export const kProtocolVersion = 2;
 
@@ -173,7 +173,7 @@ export type ServerMessage =
   | { type: 'hello'; protocol: number; server: string; connection: string }
   | { type: 'ok'; request?: number }
   | { type: 'error'; request?: number; code: string; message: string }
-  | { type: 'run'; run: Run }
+  | { type: 'run'; run: StreamedRun }
   | { type: 'series'; run: string; series: SeriesInfo[] }
   | { type: 'pictures'; pictures: PictureInfo[]; reduction?: number }
   | { type: 'labels'; id: number; sequence: number; labels: SceneLabel[] }

@@ -9,6 +9,28 @@ export type RunStatus =
   | 'interrupted'
   | 'unreadable';
 
+/** How one estimator performed. */
+export interface EstimatorResult {
+  estimator: string;
+  outcome: string;
+  /** Of alignment init_scale; null if the estimate could not be aligned. */
+  position_rmse_m: number | null;
+  /** Of the path. */
+  position_rmse_percent: number | null;
+}
+
+/** What differs between runs. */
+export interface Differences {
+  runs: string[];
+  /** `values`: one for each run; null = absent. */
+  fields: { field: string; values: (string | null)[] }[];
+  /** Fields beyond the server's limit. */
+  left_out: number;
+}
+
+/** A run in the stream's messages. */
+export type StreamedRun = Omit<Run, 'results' | 'tags' | 'note'>;
+
 export interface Run {
   id: string;
   scenario: string;
@@ -29,6 +51,12 @@ export interface Run {
   attribution: string;
   /** The imagery, not the camera, limits the result. */
   texture_limited: boolean;
+  /** Empty until the run is scored. */
+  results: EstimatorResult[];
+  /** Written by people. */
+  tags: string[];
+  /** Likewise. */
+  note: string;
   /** Of a waiting run, 1 = next. */
   queue_position: number | null;
   /** Time until a flying run ends, as far as it is known. */
@@ -70,7 +98,16 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 export type JsonObject = Record<string, Json>;
 
 /** Errors of one estimate under one alignment; null if not available. */
+/** Errors over the sub-paths of one length. */
+export interface RelativeError {
+  length_m: number;
+  pairs: number;
+  translation_percent: number;
+  rotation_deg_per_100m: number;
+}
+
 export interface AlignmentErrors {
+  relative?: RelativeError[];
   scale?: number | null;
   position_rmse_m?: number | null;
   rotation_rmse_deg?: number | null;

@@ -151,6 +151,16 @@ export class Catalogue {
     await this.attempt(() => this.rest.cancelRun(id));
   }
 
+  /** Replaces what people wrote about a run. @return whether the server took it */
+  async setNotes(id: string, tags: readonly string[], note: string): Promise<boolean> {
+    let taken = false;
+    await this.attempt(async () => {
+      await this.rest.setNotes(id, tags, note);
+      taken = true;
+    });
+    return taken;
+  }
+
   async remove(id: string): Promise<void> {
     await this.attempt(async () => {
       await this.rest.deleteRun(id);

@@ -1,6 +1,13 @@
 // The errors of all shown runs, estimators and alignments as text: CSV with every digit, Markdown
 // and LaTeX with those that the dashboard shows.
-import { alignmentModes, kErrorFigures, outcomeText } from './error_table';
+import {
+  alignmentModes,
+  kErrorFigures,
+  kRelativeLengths_m,
+  outcomeText,
+  relativeError,
+  shownLengths_m,
+} from './error_table';
 import type { AlignmentErrors, EstimatorMetrics } from '../protocol/rest_types';
 import { formatNumber, numberOf } from './format';
 import type { TextFormat } from './table_text';
@@ -20,9 +27,11 @@ export function exportErrors(watched: readonly WatchedRun[], format: TextFormat)
   const entries = watched.flatMap(entriesOf);
   if (format === 'CSV') return csv(entries);
   const several = watched.length > 1;
-  const figures = kErrorFigures.map(({ label, unit }) =>
-    unit === '' ? label : `${label} [${unit}]`,
-  );
+  const lengths_m = shownLengths_m(entries.map(({ errors }) => errors));
+  const figures = [
+    ...kErrorFigures.map(({ label, unit }) => (unit === '' ? label : `${label} [${unit}]`)),
+    ...lengths_m.map((length_m) => `Drift in ${length_m} m [%]`),
+  ];
   const head = [...(several ? ['Run'] : []), 'Estimator', 'Outcome', 'Alignment', ...figures];
   const rows = entries.map((entry) => [
     ...(several ? [entry.run.run?.title ?? entry.run.id] : []),
@@ -30,8 +39,11 @@ export function exportErrors(watched: readonly WatchedRun[], format: TextFormat)
     outcomeText(entry.estimator),
     entry.mode,
     ...kErrorFigures.map(({ key, digits }) => formatNumber(numberOf(entry.errors[key]), digits)),
+    ...lengths_m.map((length_m) =>
+      formatNumber(relativeError(entry.errors, length_m)?.translation_percent, 3),
+    ),
   ]);
-  const table = { head, rows, numbers: kErrorFigures.length };
+  const table = { head, rows, numbers: figures.length };
   return format === 'Markdown' ? markdownTable(table) : latexTable(table);
 }
 
@@ -55,7 +67,11 @@ function csv(entries: Entry[]): string {
     estimator.coverage ?? '',
     mode,
     ...keys.map((key) => numberOf(errors[key]) ?? ''),
+    ...kRelativeLengths_m.map(
+      (length_m) => relativeError(errors, length_m)?.translation_percent ?? '',
+    ),
   ]);
   const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
-  return csvTable([...head, ...keys], lines);
+  const drifts = kRelativeLengths_m.map((length_m) => `translation_percent_${length_m}m`);
+  return csvTable([...head, ...keys, ...drifts], lines);
 }

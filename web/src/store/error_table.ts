@@ -1,5 +1,11 @@
 // Converts metrics.json to the error table: one column per estimator, one row per quantity.
-import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
+import type {
+  AlignmentErrors,
+  EstimatorMetrics,
+  Metrics,
+  RelativeError,
+  Run,
+} from '../protocol/rest_types';
 import { formatNumber, formatPercent, kNothing, numberOf } from './format';
 
 export const kDefaultAlignment = 'init_scale';
@@ -75,6 +81,45 @@ export const kErrorFigures: readonly Figure[] = [
   },
 ];
 
+/** Lengths of the sub-paths whose errors are shown [m]; the metrics have every hundred to 800 m. */
+export const kRelativeLengths_m: readonly number[] = [100, 200, 400, 800, 1000, 2000, 5000];
+/** Longer ones are shown where the path has them. */
+const kAlwaysShown_m = 800;
+
+/** Errors over sub-paths of one length, as of KITTI; undefined if the path is shorter. */
+export function relativeError(
+  errors: AlignmentErrors,
+  length_m: number,
+): RelativeError | undefined {
+  return errors.relative?.find((one) => one.length_m === length_m);
+}
+
+/** The lengths that a table of these errors shows. */
+export function shownLengths_m(errors: readonly AlignmentErrors[]): number[] {
+  return kRelativeLengths_m.filter(
+    (length_m) =>
+      length_m <= kAlwaysShown_m || errors.some((error) => relativeError(error, length_m)),
+  );
+}
+
+function relativeRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
+  return shownLengths_m(errors).map((length_m) => {
+    const found = errors.map((error) => relativeError(error, length_m));
+    return {
+      key: `relative_${length_m}m`,
+      label: `Drift in ${length_m} m`,
+      unit: '%',
+      hint: `Root mean square of the translation error over all sub-paths of ${length_m} m, each aligned at its beginning, in % of its length`,
+      cells: found.map((one) => formatNumber(one?.translation_percent, 3)),
+      cellHints: found.map((one) =>
+        one === undefined
+          ? `The tracked path has no part of ${length_m} m`
+          : `${one.pairs} sub-paths; rotation ${formatNumber(one.rotation_deg_per_100m, 4)} deg per 100 m`,
+      ),
+    };
+  });
+}
+
 export function errorTable(
   metrics: Metrics,
   mode: string,
@@ -105,6 +150,7 @@ export function errorTable(
         cells: errors.map((error) => formatNumber(numberOf(error[row.key]), digits)),
         cellHints: errors.map((error) => missingHint(error, row.key)),
       })),
+      ...relativeRows(errors),
       {
         key: 'dropped_frames',
         label: 'Dropped frames',

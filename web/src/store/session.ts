@@ -2,7 +2,7 @@
 import type { ConnectionState, StreamClient, StreamListener } from '../connection/stream_client';
 import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../protocol/messages';
 import type { PictureMessage } from '../protocol/parse';
-import type { Run } from '../protocol/rest_types';
+import type { StreamedRun } from '../protocol/rest_types';
 import type { Notices } from './notices';
 import type { Decode } from './pictures/picture_decoder';
 import type { OpenVideo } from './pictures/video_decoding';
@@ -295,17 +295,19 @@ export class Session implements StreamListener {
     this.store.change('pictures');
   }
 
-  private onRun(run: Run): void {
+  private onRun(streamed: StreamedRun): void {
     const { state } = this;
-    const watched = state.watchedRun(run.id);
+    const watched = state.watchedRun(streamed.id);
     if (watched === undefined) return;
+    const index = state.runs?.findIndex(({ id }) => id === streamed.id) ?? -1;
+    const known = state.runs?.[index] ?? watched.run ?? { results: [], tags: [], note: '' };
+    const run = { results: known.results, tags: known.tags, note: known.note, ...streamed };
     watched.run = run;
     const { world_change } = run;
     if (world_change !== null && world_change !== this.saidOfWorld.get(run.id)) {
       this.notices.error(world_change);
     }
     this.saidOfWorld.set(run.id, world_change);
-    const index = state.runs?.findIndex(({ id }) => id === run.id) ?? -1;
     if (state.runs !== null && index >= 0) state.runs[index] = run;
     this.subscribe();
     this.store.change('run', 'lists');

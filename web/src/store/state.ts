@@ -26,6 +26,8 @@ import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
 import type { SceneLook } from './scene/scene_look';
 import { usualLook } from './scene/scene_look';
+import type { SweepPage } from './sweeps/sweep_page';
+import { initialSweepPage } from './sweeps/sweep_page';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
@@ -89,6 +91,7 @@ export class State {
   scorePage: ScorePage = initialScorePage();
   calibrationPage: CalibrationPage = initialCalibrationPage();
   missionPage: MissionPage = initialMissionPage();
+  sweepPage: SweepPage = initialSweepPage();
 
   // ---- the main run ----------------------------------------------------------------------------
 
@@ -189,6 +192,7 @@ const kTopicNames = [
   'calibration',
   'missions',
   'missionCursor',
+  'sweeps',
   'layout',
   'theme',
   'palette',

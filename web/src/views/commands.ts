@@ -101,6 +101,7 @@ function pageCommands({
   logs,
   missions,
   scores,
+  sweeps,
 }: Context): Command[] {
   const group = 'Page';
   return [
@@ -110,6 +111,13 @@ function pageCommands({
       title: 'Missions on a map',
       words: 'draw plan waypoints qgroundcontrol',
       run: () => void missions.open(),
+    },
+    {
+      id: 'sweeps',
+      group,
+      title: 'Sweeps of many flights',
+      words: 'matrix table experiment success rate envelope',
+      run: () => void sweeps.open(),
     },
     {
       id: 'scoring',

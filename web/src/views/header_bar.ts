@@ -175,6 +175,9 @@ function pageButtons(context: Context): HTMLElement[] {
     pageButton('missions', 'Missions', 'Draw missions on a map, check and fly them', () =>
       context.missions.open(),
     ),
+    pageButton('sweeps', 'Sweeps', 'Many flights with changed fields, and what they found', () =>
+      context.sweeps.open(),
+    ),
     pageButton('scores', 'Score files', 'Score trajectories of files, runs and logs', () =>
       context.scores.open(),
     ),

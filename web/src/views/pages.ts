@@ -1,4 +1,6 @@
-// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera, missions.
+// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera,
+// missions, sweeps.
+import { isLayoutFile } from '../store/layouts/layout_file';
 import { PageOverlay } from './page_overlay';
 import type { Context, View } from './view';
 
@@ -29,12 +31,18 @@ export function makePages(context: Context): View[] {
       page: ({ missionPage }) => missionPage,
       load: async (owner) => new (await import('./missions/mission_page')).MissionPageView(owner),
     }),
+    new PageOverlay(context, {
+      name: 'sweeps',
+      topic: 'sweeps',
+      page: ({ sweepPage }) => sweepPage,
+      load: async (owner) => new (await import('./sweeps/sweep_page')).SweepPageView(owner),
+    }),
   ];
 }
 
 /**
  * Files dropped anywhere are read: as missions where those are drawn, as images where a camera is
- * calibrated, as trajectories where those are scored, else as logs.
+ * calibrated, as trajectories where those are scored, else as layouts or logs.
  */
 export function acceptFiles(context: Context): void {
   const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
@@ -50,6 +58,16 @@ export function acceptFiles(context: Context): void {
     if (missionPage.open && files[0] !== undefined) void context.missions.import(files[0]);
     else if (calibrationPage.open) void context.calibration.send(files);
     else if (scorePage.open) void context.scores.send(files);
-    else void context.logs.open().then(() => context.logs.send(files));
+    else void acceptLayoutOrLogs(context, files);
   });
+}
+
+async function acceptLayoutOrLogs(context: Context, files: File[]): Promise<void> {
+  const [only] = files;
+  if (only !== undefined && files.length === 1 && (await isLayoutFile(only))) {
+    await context.layoutExchange.import(only);
+    return;
+  }
+  await context.logs.open();
+  await context.logs.send(files);
 }

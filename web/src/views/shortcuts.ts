@@ -197,6 +197,7 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.scorePage.open = false;
   store.state.calibrationPage.open = false;
   store.state.missionPage.open = false;
-  store.change('help', 'logs', 'missions', 'palette', 'scoring', 'calibration');
+  store.state.sweepPage.open = false;
+  store.change('help', 'logs', 'missions', 'palette', 'scoring', 'calibration', 'sweeps');
   layouts.restore();
 }

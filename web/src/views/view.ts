@@ -9,8 +9,10 @@ import type { SceneControl } from '../store/scene/scene_control';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
+import type { LayoutExchange } from '../store/layouts/layout_exchange';
 import type { Layouts } from '../store/layouts/layouts';
 import type { MissionDesk } from '../store/missions/mission_desk';
+import type { SweepDesk } from '../store/sweeps/sweep_desk';
 import type { RestClient } from '../connection/rest_client';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
@@ -47,9 +49,11 @@ export interface Context {
   scores: ScoreDesk;
   calibration: CalibrationDesk;
   missions: MissionDesk;
+  sweeps: SweepDesk;
   rest: RestClient;
   notices: Notices;
   client: StreamClient;
   layouts: Layouts;
+  layoutExchange: LayoutExchange;
   themes: Themes;
 }

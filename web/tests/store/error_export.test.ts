@@ -14,7 +14,13 @@ function scored(id: string, title: string): WatchedRun {
         coverage: 0.5,
         alignments: {
           sim3: { scale: 1, position_rmse_m: 0.1234567890123 },
-          init_scale: { scale: -2, position_rmse_m: 1.5 },
+          init_scale: {
+            scale: -2,
+            position_rmse_m: 1.5,
+            relative: [
+              { length_m: 200, pairs: 2, translation_percent: 3.5, rotation_deg_per_100m: 1 },
+            ],
+          },
         },
       },
     },
@@ -31,7 +37,7 @@ describe('exportErrors', () => {
     expect(lines[0]).toContain(
       'run,title,estimator,outcome,outcome_time_s,coverage,alignment,scale',
     );
-    expect(lines[1]).toBe('r1,"a, ""b""",feature,LOST,3.14159,0.5,init_scale,-2,1.5,,,');
+    expect(lines[1]).toBe('r1,"a, ""b""",feature,LOST,3.14159,0.5,init_scale,-2,1.5,,,,,3.5,,,,,');
     expect(lines[2]).toContain('sim3,1,0.1234567890123,');
   });
 
@@ -51,7 +57,7 @@ describe('exportErrors', () => {
 
   it('writes LaTeX with its special characters escaped', () => {
     const text = exportErrors([scored('r1', '50 % a_b'), scored('r2', 'z')], 'LaTeX');
-    expect(text).toContain('\\begin{tabular}{llllrrrrr}');
+    expect(text).toContain('\\begin{tabular}{llllrrrrrrrrr}');
     expect(text).toContain('50 \\% a\\_b & feature & LOST at 3.1 s & init\\_scale & $-$2.0000');
     expect(text.match(/\\\\\n/g)).toHaveLength(5);
   });

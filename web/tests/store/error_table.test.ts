@@ -3,6 +3,7 @@ import type { Metrics } from '../../src/protocol/rest_types';
 import {
   alignmentModes,
   errorTable,
+  shownLengths_m,
   texelsPerPixel,
   textureHint,
   textureLimited,
@@ -24,6 +25,10 @@ const metrics: Metrics = {
           position_rmse_hold_m: 500,
           rotation_rmse_deg: 0.5,
           rotation_euler_norm_rmse_deg: null,
+          relative: [
+            { length_m: 100, pairs: 9, translation_percent: 1.25, rotation_deg_per_100m: 0.5 },
+            { length_m: 300, pairs: 4, translation_percent: 1, rotation_deg_per_100m: 0.1 },
+          ],
         },
       },
     },
@@ -54,8 +59,28 @@ describe('errorTable', () => {
       position_rmse_hold_m: ['500.000', '–'],
       rotation_rmse_deg: ['0.500', '–'],
       rotation_euler_norm_rmse_deg: ['–', '–'],
+      relative_100m: ['1.250', '–'],
+      relative_200m: ['–', '–'],
+      relative_400m: ['–', '–'],
+      relative_800m: ['–', '–'],
       dropped_frames: ['3', '–'],
     });
+  });
+
+  it('shows kilometres between position fixes where the path has them', () => {
+    const relative = [
+      { length_m: 2000, pairs: 3, translation_percent: 0.5, rotation_deg_per_100m: 0 },
+    ];
+    expect(shownLengths_m([{ relative }, {}])).toEqual([100, 200, 400, 800, 2000]);
+    expect(shownLengths_m([])).toEqual([100, 200, 400, 800]);
+  });
+
+  it('says how many sub-paths a drift is the mean of, or that there are none', () => {
+    const { rows } = errorTable(metrics, 'init_scale');
+    expect(rows.find(({ key }) => key === 'relative_100m')?.cellHints).toEqual([
+      '9 sub-paths; rotation 0.5000 deg per 100 m',
+      'The tracked path has no part of 100 m',
+    ]);
   });
 
   it('says why a degenerate alignment has no rotation error', () => {

@@ -159,6 +159,21 @@ describe('Session', () => {
     expect(texts()).toEqual([world_change]);
   });
 
+  it('keeps what only the list has of a run: results, tags and note', () => {
+    const results = [
+      { estimator: 'x', outcome: 'LOST', position_rmse_m: 2, position_rmse_percent: 1 },
+    ];
+    const listed = sampleRun({ results, tags: ['wind'], note: 'again' });
+    viewing.watch();
+    viewing.store.state.runs = [listed];
+    const streamed = Object.entries(sampleRun({ frames: 7 })).filter(
+      ([name]) => !['results', 'tags', 'note'].includes(name),
+    );
+    viewing.socket.receive({ type: 'run', run: Object.fromEntries(streamed) });
+    expect(viewing.store.state.runs[0]).toEqual({ ...listed, frames: 7 });
+    expect(viewing.store.state.run).toEqual({ ...listed, frames: 7 });
+  });
+
   it('reports a run that cannot be shown', () => {
     viewing.session.selectRun('gone');
     const { request } = viewing.socket.last();

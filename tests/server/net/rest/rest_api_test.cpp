@@ -82,6 +82,10 @@ class RestApiTest : public ::testing::Test {
     return answer;
   }
 
+  /// Every route of sweeps.
+  void check_sweeps();
+  /// Those that start sweeps.
+  void check_sweep_starts();
   /// Every route of calibrations.
   void check_calibrations();
   void wait_until_solved(const std::string& session);
@@ -90,6 +94,72 @@ class RestApiTest : public ::testing::Test {
   json api_;
   std::set<std::string> seen_;
 };
+
+void RestApiTest::check_sweeps() {
+  const std::string all = "/api/v1/sweeps";
+  EXPECT_TRUE(check("GET", all, all, 200).json().at("sweeps").empty());
+  const std::filesystem::path sweep = server_.folder() / "sweeps/night";
+  std::filesystem::create_directories(sweep / "runs");
+  write_text(sweep / "sweep.json",
+             R"({"title": "Night", "axes": [{"path": "seed"}], "axis_values": {"seed": [1]}})");
+  EXPECT_EQ(check("GET", all, all, 200).json().at("sweeps").at(0).at("name"), "night");
+  const std::string one = all + "/{name}";
+  EXPECT_TRUE(check("GET", one, all + "/night", 200).json().at("table").is_null());
+  const std::string run = "0123456789abcdef0123";
+  std::filesystem::copy(server_.runs().folder(server_.fly("tiny")).value(),
+                        sweep / "runs" / run,
+                        std::filesystem::copy_options::recursive);
+  write_text(sweep / "results.jsonl",
+             R"({"key": "k", "cell": {"seed": 1}, "repeat": 0, "seed": 1, "estimator": "perfect",
+                 "run": "runs/0123456789abcdef0123", "error": "", "status": "completed",
+                 "outcome": "COMPLETED", "duration_s": 1})"_json.dump() +
+                 "\n");
+  const json table = check("GET", one, all + "/night", 200).json().at("table");
+  ASSERT_EQ(table.at("rows").size(), 1U) << table;
+  EXPECT_EQ(table.at("rows").at(0).at("runs"), json::array({"night." + run}));
+  const std::string shown = "/api/v1/runs/night." + run;
+  EXPECT_EQ(check("GET", "/api/v1/runs/{id}", shown, 200).json().at("id"), "night." + run);
+  check("DELETE", "/api/v1/runs/{id}", shown, 409);
+  write_text(sweep / "sweep.json", "{");
+  check("GET", one, all + "/night", 422);
+  check("GET", one, all + "/none", 404);
+  check_sweep_starts();
+}
+
+void RestApiTest::check_sweep_starts() {
+  const std::string all = "/api/v1/sweeps";
+  const std::string files = "/api/v1/sweep-files";
+  const std::filesystem::path folder = server_.folder() / "scenarios/sweeps";
+  std::filesystem::create_directories(folder);
+  write_text(folder / "own.json",
+             R"({"format_version": 1, "scenario": "../tiny.json",
+                 "axes": [{"path": "seed", "values": [1]}]})");
+  EXPECT_EQ(check("GET", files, files, 200).json().at("files").size(), 1U);
+  check("GET", files + "/{name}", files + "/own", 200);
+  check("GET", files + "/{name}", files + "/none", 404);
+  const std::string cost = "/api/v1/sweep-check";
+  EXPECT_EQ(check("POST", cost, cost, 200, R"({"file": "own"})", kJson).json().at("cells"), 1);
+  check("POST", cost, cost, 200, R"({"document": {}})", kJson);
+  check("POST", cost, cost, 400, R"({})", kJson);
+  check("POST", all, all, 201, R"({"name": "own", "file": "own"})", kJson);
+  check("POST", all, all, 400, R"({"name": "a/b", "file": "own"})", kJson);
+  check("POST", all, all, 404, R"({"name": "x", "file": "none"})", kJson);
+  check("GET", all + "/{name}/document", all + "/own/document", 200);
+  check("GET", all + "/{name}/document", all + "/none/document", 404);
+  const std::string go_on = all + "/{name}/continue";
+  check("POST", go_on, all + "/none/continue", 404, "{}", kJson);
+  check("POST", all + "/{name}/cancel", all + "/none/cancel", 404);
+  const auto flies = [&] {
+    for (const json& sweep : json(ask(server_.port(), "GET", all).json().at("sweeps"))) {
+      if (sweep.at("name") == "own") return !sweep.at("here").is_null();
+    }
+    return false;
+  };
+  for (int turns = 0; turns < 1000 && flies(); ++turns) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  check("POST", go_on, all + "/own/continue", 202, "{}", kJson);
+}
 
 void RestApiTest::wait_until_solved(const std::string& session) {
   for (int turns = 0; turns < 3000; ++turns) {
@@ -196,6 +266,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("DELETE", scenario, "/api/v1/scenarios/tiny", 403);
   check("DELETE", scenario, mine, 204);
   check("DELETE", scenario, mine, 404);
+  check_sweeps();
   const std::string checks = "/api/v1/scenario-check";
   const auto checked = [&](const json& document, int status) {
     return check("POST", checks, checks, status, json{{"document", document}}.dump(), kJson);
@@ -305,6 +376,15 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   EXPECT_EQ(check("GET", runs, runs, 200).json().at("runs").at(0).at("id"), id);
   EXPECT_EQ(check("GET", one, run, 200).json().at("status"), "completed");
   check("GET", one + "/metrics", run + "/metrics", 200);
+  const std::string notes = json{{"tags", {"wind"}}, {"note", "again"}}.dump();
+  check("PUT", one + "/notes", run + "/notes", 200, notes, kJson);
+  check("PUT", one + "/notes", run + "/notes", 400, "{}", kJson);
+  check("PUT", one + "/notes", run + "/notes", 415, notes);
+  check("PUT", one + "/notes", runs + "/none/notes", 404, notes, kJson);
+  const std::string differences = "/api/v1/differences";
+  check("GET", differences, differences + "?runs=" + id + "," + id, 200);
+  check("GET", differences, differences + "?runs=" + id, 400);
+  check("GET", differences, differences + "?runs=none," + id, 404);
   check("GET", one + "/manifest", run + "/manifest", 200);
   EXPECT_EQ(check("GET", one + "/scenario", run + "/scenario", 200).json().at("name"), "tiny");
   const json statuses =

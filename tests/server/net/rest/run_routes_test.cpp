@@ -69,6 +69,72 @@ TEST(RunRoutes, TellsWhatAPixelShows) {
   EXPECT_EQ(look("x", "?x_px=1&y_px=1").status, 404);
 }
 
+TEST(RunRoutes, KeepsTagsAndNoteOfARun) {
+  TestServer server;
+  const std::string run = std::string(kRuns) + "/" + server.fly("tiny");
+  const json notes = {{"tags", {"baseline", "wind"}}, {"note", "Two\nlines"}};
+  const auto put = [&](const json& body) {
+    return ask(server.port(), "PUT", run + "/notes", body.dump(), kJson);
+  };
+  const Answer kept = put(notes);
+  ASSERT_EQ(kept.status, 200) << kept.body;
+  EXPECT_EQ(kept.json().at("tags"), notes.at("tags"));
+  const json listed = ask(server.port(), "GET", kRuns).json().at("runs").at(0);
+  EXPECT_EQ(listed.at("note"), "Two\nlines");
+  EXPECT_EQ(listed.at("results").at(0).at("outcome"), "COMPLETED");
+  EXPECT_LT(listed.at("results").at(0).at("position_rmse_m"), 1e-3);
+  EXPECT_THAT(put({{"tags", {"a,b"}}, {"note", ""}}).body, HasSubstr("tags.0: must have no comma"));
+  EXPECT_THAT(put({{"tags", {1}}, {"note", ""}}).body, HasSubstr("tags.0"));
+  EXPECT_EQ(put({{"tags", {1}}, {"note", ""}}).status, 400);
+  EXPECT_EQ(put({{"tags", json::array()}}).status, 400);
+  EXPECT_EQ(put({{"tags", json::array()}, {"note", ""}, {"x", 1}}).status, 400);
+  EXPECT_EQ(ask(server.port(), "GET", run).json().at("tags"), notes.at("tags")) << "as before";
+  EXPECT_EQ(
+      ask(server.port(), "PUT", std::string(kRuns) + "/nobody/notes", notes.dump(), kJson).status,
+      404);
+}
+
+TEST(RunRoutes, ShowsWhatDiffersBetweenRuns) {
+  TestServer server;
+  const std::string a = server.fly("tiny");
+  const Answer again = launch(server, {{"scenario", "tiny"}, {"overrides", {{"seed", 77}}}});
+  ASSERT_EQ(again.status, 201) << again.body;
+  const std::string b = again.json().at("id");
+  server.wait_for_end(b);
+  const auto ask_for = [&](const std::string& ids) {
+    return ask(server.port(), "GET", "/api/v1/differences?runs=" + ids);
+  };
+  const Answer answer = ask_for(a + "," + b);
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const json differences = answer.json();
+  EXPECT_EQ(differences.at("runs"), json({a, b}));
+  EXPECT_EQ(differences.at("left_out"), 0);
+  bool found = false;
+  for (const json& field : differences.at("fields")) {
+    if (field.at("field") != "scenario.seed") continue;
+    found = true;
+    EXPECT_EQ(field.at("values").at(1), "77");
+  }
+  EXPECT_TRUE(found) << answer.body;
+  EXPECT_TRUE(ask_for(a + "," + a).json().at("fields").empty());
+  EXPECT_EQ(ask_for(a).status, 400);
+  EXPECT_EQ(ask_for("").status, 400);
+  EXPECT_EQ(ask_for(a + ",").status, 400);
+  EXPECT_EQ(ask_for(a + ",nobody").status, 404);
+  EXPECT_EQ(ask_for(a + ",..%2f..%2fetc").status, 404);
+  // A default in place of an invalid field would be compared.
+  const fs::path file = server::manifest_file(server.folder() / "runs" / b);
+  json manifest = server::read_json(file).value();
+  manifest["seed"] = "many";
+  ASSERT_TRUE(server::write_json(file, manifest).ok());
+  const Answer refused = ask_for(a + "," + b);
+  EXPECT_EQ(refused.status, 422) << refused.body;
+  EXPECT_THAT(refused.body, HasSubstr("seed"));
+  std::string many = a;
+  for (int i = 0; i < 16; ++i) many += "," + a;
+  EXPECT_EQ(ask_for(many).status, 400);
+}
+
 TEST(RunRoutes, RunBeyondTheMemoryIsRefusedWithFieldValueAndLimit) {
   server::RunManagerOptions options;
   options.memory_limit_bytes = std::uint64_t{512} << 20U;

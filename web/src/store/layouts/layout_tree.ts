@@ -51,41 +51,107 @@ export function sameArrangement(a: LayoutNode, b: LayoutNode, tolerance = 0.01):
   });
 }
 
-/** @return null for anything that is not an arrangement in which every panel occurs once */
-export function readLayout(value: unknown): LayoutNode | null {
-  const node = readNode(value, null, kDeepest);
-  if (node === null) return null;
-  const panels = panelsOf(node);
-  return new Set(panels).size === panels.length ? node : null;
+/** Names the field that is wrong, and what it must be. */
+export class LayoutError extends Error {
+  constructor(field: string, problem: string) {
+    super(`${field}: ${problem}`);
+    this.name = 'LayoutError';
+  }
 }
 
-function readNode(value: unknown, above: Split['split'] | null, depth: number): LayoutNode | null {
-  if (typeof value !== 'object' || value === null || depth === 0) return null;
-  const { tabs, active, split, parts } = value as Record<string, unknown>;
-  if (Array.isArray(tabs)) return readTabs(tabs, active);
-  if ((split !== 'row' && split !== 'column') || split === above) return null;
-  if (!Array.isArray(parts) || parts.length === 0 || parts.length > kMostParts) return null;
-  const read: Part[] = [];
-  for (const part of parts as unknown[]) {
-    const one = readPart(part, split, depth - 1);
-    if (one === null) return null;
-    read.push(one);
+/** @return null for anything that is not an arrangement in which every panel occurs once */
+export function readLayout(value: unknown): LayoutNode | null {
+  try {
+    return checkLayout(value, 'layout');
+  } catch (error) {
+    if (error instanceof LayoutError) return null;
+    throw error;
   }
+}
+
+/**
+ * Reads an arrangement in which every panel occurs once. Errors: LayoutError.
+ * @param field  names the value in errors
+ */
+export function checkLayout(value: unknown, field: string): LayoutNode {
+  const node = readNode(value, field, null, kDeepest);
+  const panels = panelsOf(node);
+  const twice = panels.find((panel, i) => panels.indexOf(panel) !== i);
+  if (twice !== undefined) throw new LayoutError(field, `the panel "${twice}" occurs twice`);
+  return node;
+}
+
+/**
+ * The fields of an object that has no others than these. Errors: LayoutError.
+ * @param known  names that the object may have
+ */
+export function checkFields(
+  value: unknown,
+  field: string,
+  known: readonly string[],
+): Record<string, unknown> {
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) {
+    throw new LayoutError(field, 'must be an object');
+  }
+  const other = Object.keys(value).find((name) => !known.includes(name));
+  if (other !== undefined) {
+    throw new LayoutError(field, `has the unknown field ${quoted(other)}`);
+  }
+  return value as Record<string, unknown>;
+}
+
+/** A value of a file in a message: of limited length. */
+export function quoted(value: unknown): string {
+  const text = JSON.stringify(value) as string | undefined;
+  if (text === undefined) return 'nothing';
+  return text.length > 40 ? `${text.slice(0, 40)}…` : text;
+}
+
+function readNode(
+  value: unknown,
+  field: string,
+  above: Split['split'] | null,
+  depth: number,
+): LayoutNode {
+  if (depth === 0) throw new LayoutError(field, `is more than ${kDeepest} levels deep`);
+  const fields = checkFields(value, field, ['tabs', 'active', 'split', 'parts']);
+  if ('tabs' in fields) return readTabs(fields, field);
+  const { split, parts } = checkFields(value, field, ['split', 'parts']);
+  if (split !== 'row' && split !== 'column') {
+    throw new LayoutError(`${field}.split`, `must be "row" or "column", not ${quoted(split)}`);
+  }
+  if (split === above) {
+    throw new LayoutError(`${field}.split`, `a ${split} must not lie directly in a ${split}`);
+  }
+  if (!Array.isArray(parts) || parts.length === 0 || parts.length > kMostParts) {
+    throw new LayoutError(`${field}.parts`, `must be a list of 1 to ${kMostParts} parts`);
+  }
+  const read = parts.map((part: unknown, i) =>
+    readPart(part, `${field}.parts[${i}]`, split, depth - 1),
+  );
   return { split, parts: read };
 }
 
-function readTabs(tabs: unknown[], active: unknown): Tabs | null {
-  const names = tabs.filter(isPanelName);
+function readTabs(value: unknown, field: string): Tabs {
+  const { tabs, active } = checkFields(value, field, ['tabs', 'active']);
+  if (!Array.isArray(tabs) || tabs.length === 0) {
+    throw new LayoutError(`${field}.tabs`, 'must be a list of names of panels');
+  }
+  const names = tabs.map((name: unknown, i) => {
+    if (isPanelName(name)) return name;
+    throw new LayoutError(`${field}.tabs[${i}]`, `there is no panel ${quoted(name)}`);
+  });
   const front = names.find((name) => name === active);
-  return names.length === tabs.length && front !== undefined
-    ? { tabs: names, active: front }
-    : null;
+  if (front === undefined) {
+    throw new LayoutError(`${field}.active`, `must be one of the tabs, not ${quoted(active)}`);
+  }
+  return { tabs: names, active: front };
 }
 
-function readPart(value: unknown, split: Split['split'], depth: number): Part | null {
-  if (typeof value !== 'object' || value === null) return null;
-  const { size, node } = value as Record<string, unknown>;
-  if (typeof size !== 'number' || !Number.isFinite(size) || size <= 0) return null;
-  const read = readNode(node, split, depth);
-  return read === null ? null : { size, node: read };
+function readPart(value: unknown, field: string, split: Split['split'], depth: number): Part {
+  const { size, node } = checkFields(value, field, ['size', 'node']);
+  if (typeof size !== 'number' || !Number.isFinite(size) || size <= 0) {
+    throw new LayoutError(`${field}.size`, `must be a number above 0, not ${quoted(size)}`);
+  }
+  return { size, node: readNode(node, `${field}.node`, split, depth) };
 }

@@ -9,8 +9,8 @@ import { kDefaultLayout, readyLayout } from './ready_layouts';
 
 const kKey = 'overfly.layouts';
 const kVersion = 1;
-const kMostOwn = 50;
-const kLongestLook = 300;
+export const kMostOwn = 50;
+export const kLongestLook = 300;
 export const kLongestName = 40;
 
 export type Storage = Pick<globalThis.Storage, 'getItem' | 'setItem'>;
@@ -20,6 +20,14 @@ export interface LayoutLook {
   view: string;
   show: string;
   sideBySide: boolean;
+}
+
+/** An own layout, as it is passed on. */
+export interface OwnLayout {
+  name: string;
+  tree: LayoutNode;
+  /** null = the 3D view and the pictures stay as they are. */
+  look: LayoutLook | null;
 }
 
 /** Where the look comes from, and where it goes. */
@@ -125,9 +133,8 @@ export class Layouts {
     const name = title.trim();
     const tree = this.arranger?.tree();
     if (tree === undefined) return 'There is nothing to keep yet.';
-    if (name === '') return 'A layout needs a name.';
-    if (name.length > kLongestName) return `A name has at most ${kLongestName} characters.`;
-    if (readyLayout(name.toLowerCase()) !== undefined) return `${name} is a ready-made layout.`;
+    const problem = nameProblem(name);
+    if (problem !== null) return problem;
     if (!this.own.has(name) && this.own.size >= kMostOwn) {
       return `There are ${kMostOwn} layouts already: delete one first.`;
     }
@@ -137,6 +144,46 @@ export class Layouts {
     this.changed = null;
     this.keep();
     return null;
+  }
+
+  /** The own layouts of these names. */
+  copies(names: readonly string[]): OwnLayout[] {
+    return names.flatMap((name) => {
+      const tree = this.own.get(name);
+      return tree === undefined ? [] : [{ name, tree, look: this.looks.get(name) ?? null }];
+    });
+  }
+
+  /**
+   * Adds own layouts, all or none. One that differs from the own one of its name gets a number behind
+   * the name.
+   * @return their names; null if there would be more than kMostOwn
+   */
+  add(layouts: readonly OwnLayout[]): string[] | null {
+    const own = new Map(this.own);
+    const looks = new Map(this.looks);
+    const names = layouts.map(({ name, tree, look }) => {
+      let place = name;
+      for (
+        let number = 2;
+        own.has(place) && !this.holds({ name: place, tree, look });
+        number += 1
+      ) {
+        place = numbered(name, number);
+      }
+      own.set(place, tree);
+      if (look !== null) looks.set(place, look);
+      return place;
+    });
+    if (own.size > kMostOwn) return null;
+    this.own = own;
+    this.looks = looks;
+    this.keep();
+    return names;
+  }
+
+  private holds(layout: OwnLayout): boolean {
+    return JSON.stringify(this.copies([layout.name])[0]) === JSON.stringify(layout);
   }
 
   remove(name: string): void {
@@ -216,6 +263,19 @@ export class Layouts {
     if (this.changed === null) lost.push(this.title);
     return lost;
   }
+}
+
+/** Why an own layout cannot have this name, or null. */
+export function nameProblem(name: string): string | null {
+  if (name === '') return 'A layout needs a name.';
+  if (name.length > kLongestName) return `A name has at most ${kLongestName} characters.`;
+  if (readyLayout(name.toLowerCase()) !== undefined) return `${name} is a ready-made layout.`;
+  return null;
+}
+
+function numbered(name: string, number: number): string {
+  const end = ` (${number})`;
+  return name.slice(0, kLongestName - end.length) + end;
 }
 
 /** What is wrong in the texts is left out when they are applied. */

@@ -28,6 +28,11 @@ export const kPanels = {
     hint: 'Texels per pixel, exposure and saturation over time',
     joins: ['plots', 'camera'],
   },
+  plot3d: {
+    title: '3D plot',
+    hint: 'Tracks in 3D with axes in metres, drawn by the browser',
+    joins: ['plots', 'scene'],
+  },
   camera: { title: 'Camera', hint: 'The pictures of the aircraft', joins: ['debug', 'scene'] },
   debug: { title: 'Estimator', hint: 'Debug images of an estimator', joins: ['camera', 'scene'] },
   depth: {
@@ -44,6 +49,16 @@ export const kPanels = {
     title: 'Errors',
     hint: 'Scores of the estimates',
     joins: ['status', 'debug', 'camera'],
+  },
+  differences: {
+    title: 'Differences',
+    hint: 'What differs between the runs shown together: scenario, parameters, program',
+    joins: ['errors', 'status', 'plots'],
+  },
+  repeats: {
+    title: 'Repeated flights',
+    hint: 'Box plots and histograms of the errors over repeated flights or the runs of a tag',
+    joins: ['errors', 'status', 'plots'],
   },
   status: {
     title: 'Estimator status',

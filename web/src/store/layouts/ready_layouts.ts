@@ -83,7 +83,7 @@ function compare(area: Area): LayoutNode {
     [
       area.width_px - side_px - kTabs_px - right_px,
       split('column', [
-        [45, tabs('scene', 'camera')],
+        [45, tabs('scene', 'plot3d', 'camera')],
         [55, tabs('plots')],
       ]),
     ],

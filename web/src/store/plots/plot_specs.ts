@@ -67,6 +67,11 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
   error_across_m: { digits: 3, least: 0.1, hint: 'To the right of the true motion' },
   error_up_m: { digits: 3, least: 0.1, hint: 'Estimated height minus the true one' },
   error_rotation_deg: { digits: 3, least: 0.1, hint: 'Angle between the two attitudes' },
+  error_scale_percent: {
+    digits: 3,
+    least: 0.1,
+    hint: 'Estimated distance over the last 100 m against the true one: drift of the scale',
+  },
   latency_ms: { digits: 1, least: 5, hint: 'From the frame to its answer' },
 };
 

@@ -6,6 +6,7 @@ import { kReadyLayouts } from '../../store/layouts/ready_layouts';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import { icon } from '../icons';
 import type { Context, View } from '../view';
+import { exportButton, LayoutFiles } from './layout_files';
 
 export class LayoutMenu implements View {
   readonly root: HTMLElement;
@@ -15,6 +16,7 @@ export class LayoutMenu implements View {
   private readonly layouts = h('div', { class: 'menu-list', 'data-role': 'layouts' });
   private readonly panels = h('div', { class: 'menu-list', 'data-role': 'panels' });
   private readonly reset: HTMLButtonElement;
+  private readonly files: LayoutFiles;
   private readonly name = h('input', {
     type: 'text',
     id: 'layout-name',
@@ -36,6 +38,7 @@ export class LayoutMenu implements View {
       },
       'Undo my changes of this layout',
     );
+    this.files = new LayoutFiles(context);
     const keep = h(
       'form',
       {
@@ -63,6 +66,7 @@ export class LayoutMenu implements View {
       h('h2', {}, 'Keep this arrangement as'),
       keep,
       this.problem,
+      this.files.root,
       h('h2', {}, 'Panels'),
       this.panels,
     );
@@ -104,6 +108,7 @@ export class LayoutMenu implements View {
   private draw(): void {
     const { layouts } = this.context;
     const own = layouts.ownNames;
+    this.files.update();
     const key = JSON.stringify([own, layouts.current, layouts.isChanged]);
     rebuild(this.layouts, key, () => [
       ...kReadyLayouts.map(({ name, title, hint }) => this.layoutItem(name, title, hint)),
@@ -112,6 +117,7 @@ export class LayoutMenu implements View {
           'div',
           { class: 'menu-own' },
           this.layoutItem(name, name, 'Your own layout'),
+          exportButton(this.context, name),
           h(
             'button',
             {

@@ -5,7 +5,7 @@ import { Launcher } from '../launcher';
 import { LogPanel } from '../log_panel';
 import { DebugPanel } from '../pictures/debug_panel';
 import { PlotsPanel } from '../plots/plots_panel';
-import { RunList } from '../run_list';
+import { RunList } from '../runs/run_list';
 import { ScenePanel } from '../scene/scene_panel';
 import { VehicleCard } from '../vehicle/vehicle_card';
 import type { PanelName } from '../../store/layouts/panel_names';
@@ -20,6 +20,10 @@ export const kPanelMakers: Record<PanelName, (context: Context) => View | Promis
   plots: (context) => new PlotsPanel(context),
   'plots-errors': (context) => new PlotsPanel(context, 'errors'),
   'plots-image': (context) => new PlotsPanel(context, 'image'),
+  plot3d: async (context) => {
+    const { Plot3dPanel } = await import('../plot3d/plot3d_panel');
+    return new Plot3dPanel(context);
+  },
   camera: (context) => new CameraPanel(context),
   debug: (context) => new DebugPanel(context),
   depth: async (context) => {
@@ -31,6 +35,14 @@ export const kPanelMakers: Record<PanelName, (context: Context) => View | Promis
     return new ImageErrorPanel(context);
   },
   errors: (context) => new ErrorPanel(context),
+  differences: async (context) => {
+    const { DifferencesPanel } = await import('../runs/differences_panel');
+    return new DifferencesPanel(context);
+  },
+  repeats: async (context) => {
+    const { RepeatsPanel } = await import('../runs/repeats_panel');
+    return new RepeatsPanel(context);
+  },
   status: async (context) => {
     const { StatusPanel } = await import('../status_panel');
     return new StatusPanel(context);

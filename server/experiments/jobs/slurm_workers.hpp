@@ -1,0 +1,68 @@
+// Workers as tasks of Slurm job arrays, by its commands sbatch, squeue and scancel.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "server/experiments/jobs/worker_supply.hpp"
+
+namespace overfly::server::experiments {
+
+struct SlurmOptions {
+  std::filesystem::path sweep;    ///< folder of the sweep, absolute, on a shared file system
+  std::filesystem::path program;  ///< this program, by the same path on all nodes
+  std::size_t workers = 64;       ///< tasks at the same time at most
+  std::vector<std::string> submit_options;  ///< further ones of sbatch, after ours
+  double period_s = 5.0;                    ///< how often the queue is asked
+  double patience_s = 60.0;                 ///< longest time between two attempts to submit
+  std::function<void(const std::string&)> warn;
+};
+
+/// Keeps as many tasks queued or running as there are flights, up to SlurmOptions::workers. The
+/// queue is only asked for the number of tasks: what was flown is known from the job folder alone,
+/// so that a queue that does not answer, or a task that Slurm loses, costs no flight. All tasks
+/// have a name that only this sweep uses, by which they are found after the controller was
+/// restarted.
+class SlurmWorkers : public WorkerSupply {
+ public:
+  /// Errors: kNotFound if sbatch is missing; kUnreadable if the name of an earlier call is damaged;
+  /// kIo.
+  [[nodiscard]] static Result<std::unique_ptr<SlurmWorkers>> open(SlurmOptions options);
+
+  /// Errors: kUnsupported if Slurm refuses the first tasks three times, or if tasks end again and
+  /// again without a flight.
+  Status keep(std::size_t open, std::size_t delivered, const RunMemory& memory) override;
+  void stop() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  explicit SlurmWorkers(SlurmOptions options) : options_(std::move(options)) {}
+  Status load_name();
+  Status write_script() const;
+  /// Tasks that are queued or running; empty if the queue does not answer.
+  std::optional<std::size_t> tasks();
+  Status submit(std::size_t tasks, const RunMemory& memory);
+  Status refused(const std::string& reason);
+  /// Seconds before the next attempt after `failures_` in a row.
+  [[nodiscard]] double pause_s() const;
+
+  SlurmOptions options_;
+  std::string name_;  ///< of all jobs of this sweep: "overfly-9f3a2c01"
+  Clock::time_point next_question_;
+  Clock::time_point next_submission_;
+  bool silent_ = false;     ///< the queue does not answer, which was reported
+  bool submitted_ = false;  ///< at least once
+  int failures_ = 0;        ///< of submissions, in a row
+  int fruitless_ = 0;       ///< submissions in a row, whose tasks ended without a flight
+  std::size_t delivered_at_submission_ = 0;
+};
+
+}  // namespace overfly::server::experiments

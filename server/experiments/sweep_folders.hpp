@@ -1,0 +1,23 @@
+// The sweeps in a folder, and how far they are, for clients of a server.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/result.hpp"
+
+namespace overfly::server::experiments {
+
+/// {"sweeps": [...]}, with an entry as of sweep_entry for each folder that has a sweep, those flown
+/// last first; at most 1000.
+/// @param sweeps_folder  may be absent
+[[nodiscard]] nlohmann::json sweep_list(const std::filesystem::path& sweeps_folder);
+/// {"name", "title", "description", "version", "estimators", "repeats", "axes": [{"name", "label",
+/// "unit", "values"}], "flying", "progress", "changed_utc"}: `values` are those of all cells,
+/// `flying` tells whether a process works on the sweep, `progress` is as of read_progress.
+/// Errors: kNotFound, also for a name that is not a plain folder name; as read_json.
+[[nodiscard]] Result<nlohmann::json> sweep_entry(const std::filesystem::path& sweeps_folder,
+                                                 const std::string& name);
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,26 @@
+// How far a sweep is, and the file in its folder that tells it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+
+namespace overfly::server::experiments {
+
+struct SweepProgress {
+  std::size_t passed = 0;  ///< flights that are over or need not be flown
+  std::size_t most = 0;    ///< flights at most
+  std::size_t flown = 0;   ///< in this call
+  std::size_t failed = 0;  ///< in this call
+  double left_s = 0.0;     ///< estimate for the rest; 0 before the first flight is over
+  double spent_s = 0.0;    ///< by the flights of this call, one after the other
+};
+
+/// Errors: kIo.
+Status write_progress(const std::filesystem::path& folder, const SweepProgress& progress);
+/// The fields of SweepProgress by their names; null if the file is missing or invalid.
+[[nodiscard]] nlohmann::json read_progress(const std::filesystem::path& folder);
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,95 @@
+#include "server/timeline/scale_errors.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+
+#include "server/timeline/count_frames.hpp"
+
+namespace overfly::server {
+namespace {
+
+struct Places {
+  int map_id = 0;
+  Eigen::Vector3d truth_world_m;
+  Eigen::Vector3d estimate_world_m;
+};
+
+/// The rows before `first_frame`, at most kMaxScaleRows.
+std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
+                                     std::size_t estimator,
+                                     std::int64_t first_frame) {
+  const std::size_t end = count_rows(timeline.estimate_count(estimator), [&](std::size_t i) {
+    const auto row = timeline.estimates(estimator, i, 1);
+    return !row.empty() && row.front().sample.frame < first_frame;
+  });
+  const std::size_t count = std::min(end, kMaxScaleRows);
+  return timeline.estimates(estimator, end - count, count);
+}
+
+std::vector<FrameRow> frames_between(const RunTimeline& timeline,
+                                     std::size_t camera,
+                                     std::int64_t first_frame,
+                                     std::int64_t last_frame) {
+  const std::size_t begin =
+      count_frames(timeline, camera, [&](const FrameRow& row) { return row.frame < first_frame; });
+  const std::size_t end =
+      count_frames(timeline, camera, [&](const FrameRow& row) { return row.frame <= last_frame; });
+  return timeline.frames(begin, end - std::min(begin, end), camera);
+}
+
+std::vector<std::optional<Places>> places_of(const std::vector<EstimateRow>& rows,
+                                             const std::vector<FrameRow>& frames,
+                                             const RowAlignment& alignment) {
+  std::vector<std::optional<Places>> places(rows.size());
+  auto frame = frames.begin();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const EstimateSample& sample = rows[i].sample;
+    while (frame != frames.end() && frame->frame < sample.frame) ++frame;
+    if (frame == frames.end() || frame->frame != sample.frame) continue;
+    if (const auto T_world_body = alignment.T_world_body(rows[i])) {
+      places[i] = {sample.map_id, frame->T_world_body.translation, T_world_body->translation};
+    }
+  }
+  return places;
+}
+
+std::optional<double> scale_error_at(const std::vector<std::optional<Places>>& places,
+                                     std::size_t at) {
+  const Places& now = *places[at];
+  for (std::size_t back = 1; back <= std::min(at, kMaxScaleRows); ++back) {
+    const std::optional<Places>& then = places[at - back];
+    if (!then) continue;
+    if (then->map_id != now.map_id) return std::nullopt;
+    const double true_m = (now.truth_world_m - then->truth_world_m).norm();
+    if (true_m < kScaleWindow_m) continue;
+    return (now.estimate_world_m - then->estimate_world_m).norm() / true_m - 1.0;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::optional<double>> scale_errors_of(const RunTimeline& timeline,
+                                                   std::size_t estimator,
+                                                   const std::vector<EstimateRow>& rows,
+                                                   const RowAlignment& alignment) {
+  std::vector<std::optional<double>> errors(rows.size());
+  if (rows.empty()) return errors;
+  std::vector<EstimateRow> all = rows_before(timeline, estimator, rows.front().sample.frame);
+  const std::size_t earlier = all.size();
+  all.insert(all.end(), rows.begin(), rows.end());
+  const std::vector<FrameRow> frames = frames_between(timeline,
+                                                      camera_of_estimator(timeline, estimator),
+                                                      all.front().sample.frame,
+                                                      all.back().sample.frame);
+  const std::vector<std::optional<Places>> places = places_of(all, frames, alignment);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (places[earlier + i]) errors[i] = scale_error_at(places, earlier + i);
+  }
+  return errors;
+}
+
+}  // namespace overfly::server

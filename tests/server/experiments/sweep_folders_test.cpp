@@ -1,0 +1,96 @@
+// What a folder of sweeps tells a client.
+#include "server/experiments/sweep_folders.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/experiments/sweep_progress.hpp"
+#include "server/record/run_lock.hpp"
+#include "tests/support/support.hpp"
+
+namespace overfly::server::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using overfly::testing::TemporaryFolder;
+using overfly::testing::write_text;
+
+constexpr const char* kSweep = R"({"title": "Two heights", "estimator_names": ["feature", 3],
+  "repeats": {"most": 4}, "version": "1 abc",
+  "axes": [{"path": "h", "label": "Height", "unit": "m"}, {"name": "air"}, 5],
+  "axis_values": {"h": [50, 100], "air": ["calm"]}})";
+
+TEST(SweepFolders, ListsSweepsNewestFirst) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b", "c"}) {
+    fs::create_directories(folder.path() / name);
+    write_text(folder.path() / name / "sweep.json", kSweep);
+  }
+  write_text(folder.path() / "b/results.jsonl", "");
+  const auto later = fs::last_write_time(folder.path() / "c/sweep.json") + std::chrono::hours(1);
+  fs::last_write_time(folder.path() / "b/results.jsonl", later);
+  fs::last_write_time(folder.path() / "a/sweep.json", later - std::chrono::hours(2));
+  fs::create_directories(folder.path() / "none");
+  fs::create_directories(folder.path() / "broken");
+  write_text(folder.path() / "broken/sweep.json", "{");
+  std::vector<std::string> names;
+  const Json list = sweep_list(folder.path());
+  for (const Json& entry : list.at("sweeps")) names.push_back(entry["name"]);
+  EXPECT_EQ(names, (std::vector<std::string>{"b", "c", "a"}));
+  EXPECT_TRUE(sweep_list(folder.path() / "absent").at("sweeps").empty());
+  EXPECT_TRUE(sweep_list("").at("sweeps").empty());
+}
+
+TEST(SweepFolders, TellsAxesAndProgress) {
+  const TemporaryFolder folder;
+  const fs::path sweep = folder.path() / "s";
+  fs::create_directories(sweep);
+  write_text(sweep / "sweep.json", kSweep);
+  Json entry = sweep_entry(folder.path(), "s").value();
+  EXPECT_EQ(entry["title"], "Two heights");
+  EXPECT_EQ(entry["estimators"], Json::array({"feature"}));
+  EXPECT_EQ(entry["repeats"], 4);
+  EXPECT_EQ(entry["axes"],
+            Json::parse(R"([{"name": "h", "label": "Height", "unit": "m", "values": [50, 100]},
+                            {"name": "air", "label": "air", "unit": "", "values": ["calm"]}])"));
+  EXPECT_EQ(entry["flying"], false);
+  EXPECT_EQ(entry["progress"], nullptr);
+  SweepProgress progress;
+  progress.passed = 3;
+  progress.most = 8;
+  progress.left_s = 12.5;
+  ASSERT_TRUE(write_progress(sweep, progress).ok());
+  const auto lock = RunLock::take(sweep);
+  ASSERT_TRUE(lock.ok());
+  entry = sweep_entry(folder.path(), "s").value();
+  EXPECT_EQ(entry["flying"], true);
+  EXPECT_EQ(entry["progress"]["passed"], 3);
+  EXPECT_EQ(entry["progress"]["most"], 8);
+  EXPECT_EQ(entry["progress"]["left_s"], 12.5);
+}
+
+TEST(SweepFolders, SurvivesDamagedFiles) {
+  const TemporaryFolder folder;
+  const fs::path sweep = folder.path() / "s";
+  fs::create_directories(sweep);
+  for (const char* damaged :
+       {"{}",
+        R"({"title": 1, "axes": {}, "repeats": [], "estimator_names": "x"})",
+        R"({"axes": [{"path": 7}], "axis_values": [], "repeats": {"most": "many"}})"}) {
+    write_text(sweep / "sweep.json", damaged);
+    write_text(sweep / "progress.json", damaged);
+    const auto entry = sweep_entry(folder.path(), "s");
+    ASSERT_TRUE(entry.ok()) << damaged;
+    EXPECT_EQ((*entry)["repeats"], 1);
+    EXPECT_EQ((*entry)["progress"], nullptr);
+  }
+  write_text(sweep / "sweep.json", "[]");
+  EXPECT_EQ(sweep_entry(folder.path(), "s").error().code, ErrorCode::kUnreadable);
+  for (const char* name : {"none", "", "..", "../s", "s/../s"}) {
+    EXPECT_EQ(sweep_entry(folder.path(), name).error().code, ErrorCode::kNotFound) << name;
+  }
+}
+
+}  // namespace
+}  // namespace overfly::server::experiments

@@ -1,0 +1,61 @@
+// The REST calls about sweeps.
+import type { JsonObject } from '../protocol/rest_types';
+import type {
+  SweepCheck,
+  SweepEntry,
+  SweepFiles,
+  SweepStart,
+  SweepState,
+} from '../protocol/sweep_types';
+import type { RestClient } from './rest_client';
+
+export class SweepClient {
+  constructor(private readonly rest: RestClient) {}
+
+  /** Those flown last first. */
+  async sweeps(): Promise<SweepEntry[]> {
+    return ((await this.rest.call('GET', '/sweeps')) as { sweeps: SweepEntry[] }).sweeps;
+  }
+
+  async sweep(name: string): Promise<SweepState> {
+    return (await this.rest.call('GET', placeOf(name))) as SweepState;
+  }
+
+  /** The document of a sweep; its scenario is an absolute path. */
+  async document(name: string): Promise<JsonObject> {
+    return (await this.rest.call('GET', `${placeOf(name)}/document`)) as JsonObject;
+  }
+
+  async files(): Promise<SweepFiles> {
+    return (await this.rest.call('GET', '/sweep-files')) as SweepFiles;
+  }
+
+  async file(name: string): Promise<JsonObject> {
+    return (await this.rest.call('GET', `/sweep-files/${encodeURIComponent(name)}`)) as JsonObject;
+  }
+
+  /** The server stops checking when `signal` aborts. */
+  async check(document: JsonObject, signal: AbortSignal): Promise<SweepCheck> {
+    return (await this.rest.call('POST', '/sweep-check', { document }, {}, signal)) as SweepCheck;
+  }
+
+  async start(start: SweepStart): Promise<SweepEntry> {
+    return (await this.rest.call('POST', '/sweeps', start)) as SweepEntry;
+  }
+
+  /** @param changed  another document and number of flights at a time; {} = the sweep's own */
+  async continue(
+    name: string,
+    changed: { document?: JsonObject; jobs?: number },
+  ): Promise<SweepEntry> {
+    return (await this.rest.call('POST', `${placeOf(name)}/continue`, changed)) as SweepEntry;
+  }
+
+  async cancel(name: string): Promise<SweepEntry> {
+    return (await this.rest.call('POST', `${placeOf(name)}/cancel`)) as SweepEntry;
+  }
+}
+
+function placeOf(name: string): string {
+  return `/sweeps/${encodeURIComponent(name)}`;
+}

@@ -1,0 +1,126 @@
+// Documents of the REST interface about sweeps; server/net/rest/openapi.json is the reference.
+import type { Json, JsonObject } from './rest_types';
+
+export interface SweepAxis {
+  name: string;
+  label: string;
+  unit: string;
+  /** Of all cells; empty where the sweep was flown by an older program. */
+  values: Json[];
+}
+
+export interface SweepProgress {
+  passed: number;
+  most: number;
+  flown: number;
+  failed: number;
+  left_s: number;
+  spent_s: number;
+}
+
+export interface SweepEntry {
+  name: string;
+  title: string;
+  description?: string;
+  version?: string;
+  estimators: string[];
+  repeats: number;
+  axes: SweepAxis[];
+  /** Whether a process works on it. */
+  flying: boolean;
+  /** What this server does with it; null = nothing. */
+  here: 'flying' | 'cancelling' | null;
+  /** Why its last flight by this server ended early. */
+  problem: string | null;
+  progress: SweepProgress | null;
+  changed_utc: string;
+}
+
+export interface SweepSpread {
+  flights: number;
+  median: number;
+  q1: number;
+  q3: number;
+}
+
+export interface SweepErrors {
+  position_m: SweepSpread | null;
+  rotation_deg: SweepSpread | null;
+  horizontal_m: SweepSpread | null;
+  vertical_m: SweepSpread | null;
+  percent_of_path: SweepSpread | null;
+}
+
+/** One estimator in one cell. */
+export interface SweepRow {
+  cell: Record<string, Json>;
+  estimator: string;
+  baseline: boolean;
+  flights: number;
+  initialised: number;
+  completed: number;
+  success_rate_95: [number, number];
+  texture_limited: boolean;
+  outcomes: Record<string, number>;
+  errors: { paper: SweepErrors; sim3: SweepErrors };
+  /** Ids of runs. */
+  runs: string[];
+}
+
+export interface SweepDifference {
+  first: string;
+  second: string;
+  quantity: string;
+  cells: number;
+  median_difference: number;
+  interval_95: [number, number];
+  p_adjusted: number;
+  verdict: string;
+}
+
+export interface SweepTable {
+  failed: number;
+  unreadable: number;
+  rows: SweepRow[];
+  conventions: Record<string, { words: string; differences: SweepDifference[] }>;
+}
+
+export interface SweepState {
+  sweep: SweepEntry;
+  /** null before the first flight is over. */
+  table: SweepTable | null;
+}
+
+/** A sweep file of the server. */
+export interface SweepFile {
+  name: string;
+  title: string;
+  description: string;
+  /** Why it is no sweep. */
+  error: string | null;
+}
+
+export interface SweepFiles {
+  files: SweepFile[];
+  /** Flights at the same time. */
+  jobs: { default: number; most: number };
+}
+
+/** What is at fault with a sweep's document, or what flying it costs. */
+export interface SweepCheck {
+  valid: boolean;
+  message: string;
+  faults: unknown;
+  cells: number;
+  estimators: number;
+  /** At most. */
+  flights: number;
+  /** Mean of one flight by the clock on the wall; null = not known. */
+  flight_s: number | null;
+}
+
+export interface SweepStart {
+  name: string;
+  document: JsonObject;
+  jobs: number;
+}

@@ -1,0 +1,40 @@
+// State of the page of sweeps.
+import type { SweepEntry, SweepState } from '../../protocol/sweep_types';
+import type { SweepFormState } from './sweep_form';
+import type { SweepFigure } from './sweep_matrix';
+
+export interface SweepPage {
+  open: boolean;
+  /** null until read. */
+  sweeps: SweepEntry[] | null;
+  name: string | null;
+  /** null until read. */
+  shown: SweepState | null;
+  figure: SweepFigure;
+  /** Names of the axes along the columns and rows; null = chosen by the page. */
+  columns: string | null;
+  rows: string | null;
+  /** Values of the other axes, as JSON text. */
+  fixed: Record<string, string>;
+  /** The cell whose flights are listed, as JSON text. */
+  cell: string | null;
+  error: string | null;
+  /** A sweep that is being prepared; null = none. */
+  form: SweepFormState | null;
+}
+
+export function initialSweepPage(): SweepPage {
+  return {
+    open: false,
+    sweeps: null,
+    name: null,
+    shown: null,
+    figure: 'outcome',
+    columns: null,
+    rows: null,
+    fixed: {},
+    cell: null,
+    error: null,
+    form: null,
+  };
+}

@@ -1,0 +1,172 @@
+// Paints the box around the tracks: a grid on its floor and on the walls behind them, and numbers
+// along the edges in front.
+import type { AxisScale, AxisScales, Point3 } from '../../store/plot3d/axis_box';
+import type { OrbitView, ScreenMap } from '../../store/plot3d/orbit_view';
+import { toScreen } from '../../store/plot3d/orbit_view';
+import { tickText } from '../../store/plots/path_frame';
+import { paint } from '../paint';
+
+const kFont = '10px system-ui, sans-serif';
+const kTitles = ['x east [m]', 'y north [m]', 'z up [m]'] as const;
+const kGap_px = 7;
+const kLine_px = 13;
+const kApart_px = 2;
+/** From this part of a direction on it is more across than up. */
+const kSlant = 0.5;
+/** An edge seen from its end has no numbers. */
+const kLeastEdge_px = 40;
+
+type Pixel = [number, number];
+type Axis = 0 | 1 | 2;
+
+/** The edges of the box with numbers, and the walls behind the tracks. */
+interface Sides {
+  nearX: number;
+  nearY: number;
+  farX: number;
+  farY: number;
+}
+
+export function paintAxes(
+  pen: CanvasRenderingContext2D,
+  scales: AxisScales,
+  view: OrbitView,
+  map: ScreenMap,
+): void {
+  const sides = sidesOf(scales, view);
+  pen.lineWidth = 1;
+  pen.font = kFont;
+  paintGrid(pen, scales, sides, map);
+  const painted = new Numbers(pen);
+  const [x, y, z] = scales;
+  const centre: Point3 = [(x.low + x.high) / 2, (y.low + y.high) / 2, z.low];
+  const middle = toScreen(map, centre);
+  paintEdge(painted, 0, x, (value) => toScreen(map, [value, sides.nearY, z.low]), middle);
+  paintEdge(painted, 1, y, (value) => toScreen(map, [sides.nearX, value, z.low]), middle);
+  const corners: [number, number][] = [
+    [sides.nearX, sides.farY],
+    [sides.farX, sides.nearY],
+  ];
+  const left = corners.sort((a, b) => screenX(map, a, z.low) - screenX(map, b, z.low))[0];
+  if (left === undefined) return;
+  const foot = toScreen(map, [...left, z.low]);
+  paintEdge(painted, 2, z, (value) => toScreen(map, [...left, value]), [foot[0] + 1, foot[1]]);
+}
+
+function sidesOf([x, y]: AxisScales, { azimuth_rad }: OrbitView): Sides {
+  const fromWest = Math.sin(azimuth_rad) > -1e-6;
+  const fromSouth = Math.cos(azimuth_rad) > -1e-6;
+  return {
+    nearX: fromWest ? x.low : x.high,
+    farX: fromWest ? x.high : x.low,
+    nearY: fromSouth ? y.low : y.high,
+    farY: fromSouth ? y.high : y.low,
+  };
+}
+
+function screenX(map: ScreenMap, [x, y]: readonly [number, number], z: number): number {
+  return toScreen(map, [x, y, z])[0];
+}
+
+function paintGrid(
+  pen: CanvasRenderingContext2D,
+  [x, y, z]: AxisScales,
+  { farX, farY }: Sides,
+  map: ScreenMap,
+): void {
+  pen.strokeStyle = paint('var(--grid)');
+  pen.beginPath();
+  const line = (from: Point3, to: Point3) => {
+    pen.moveTo(...toScreen(map, from));
+    pen.lineTo(...toScreen(map, to));
+  };
+  for (const at of x.ticks) {
+    line([at, y.low, z.low], [at, y.high, z.low]);
+    line([at, farY, z.low], [at, farY, z.high]);
+  }
+  for (const at of y.ticks) {
+    line([x.low, at, z.low], [x.high, at, z.low]);
+    line([farX, at, z.low], [farX, at, z.high]);
+  }
+  for (const at of z.ticks) {
+    line([x.low, farY, at], [x.high, farY, at]);
+    line([farX, y.low, at], [farX, y.high, at]);
+  }
+  pen.stroke();
+}
+
+/** @param inside  a pixel on the side of the edge that has no numbers */
+function paintEdge(
+  painted: Numbers,
+  axis: Axis,
+  scale: AxisScale,
+  pixelOf: (value: number) => Pixel,
+  inside: Pixel,
+): void {
+  const { pen } = painted;
+  const [from, to] = [pixelOf(scale.low), pixelOf(scale.high)];
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const length_px = Math.hypot(dx, dy);
+  if (length_px < kLeastEdge_px) return;
+  pen.strokeStyle = paint('var(--outline)');
+  pen.beginPath();
+  pen.moveTo(...from);
+  pen.lineTo(...to);
+  pen.stroke();
+  const outwards = normalFrom(inside, from, [dx / length_px, dy / length_px]);
+  align(pen, outwards);
+  pen.fillStyle = paint('var(--muted)');
+  const numbers = scale.ticks.map((value) => ({
+    text: tickText(value, scale.step),
+    at: shifted(pixelOf(value), outwards, kGap_px),
+  }));
+  for (const { text, at } of numbers) painted.paint(text, at);
+  pen.fillStyle = paint('var(--text)');
+  if (axis === 2) {
+    pen.textAlign = 'center';
+    pen.textBaseline = 'bottom';
+    pen.fillText(kTitles[axis], to[0], to[1] - 1.5 * kGap_px);
+    return;
+  }
+  const widest_px = Math.max(...numbers.map(({ text }) => pen.measureText(text).width));
+  const beside_px = Math.abs(outwards[0]) > kSlant ? widest_px + kGap_px : kLine_px;
+  const middle: Pixel = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
+  pen.fillText(kTitles[axis], ...shifted(middle, outwards, kGap_px + beside_px));
+}
+
+/** The numbers of all edges: none covers an earlier one. */
+class Numbers {
+  private readonly places: { left: number; right: number; y: number }[] = [];
+
+  constructor(readonly pen: CanvasRenderingContext2D) {}
+
+  paint(text: string, [x, y]: Pixel): void {
+    const { pen, places } = this;
+    const width_px = pen.measureText(text).width;
+    const before = { left: 0, center: 0.5, right: 1 }[pen.textAlign as 'left' | 'center' | 'right'];
+    const left = x - before * width_px - kApart_px;
+    const right = left + width_px + 2 * kApart_px;
+    const covers = places.some(
+      (other) => left < other.right && other.left < right && Math.abs(y - other.y) < kLine_px,
+    );
+    if (covers) return;
+    pen.fillText(text, x, y);
+    places.push({ left, right, y });
+  }
+}
+
+/** The unit vector across an edge, away from a pixel. */
+function normalFrom(inside: Pixel, from: Pixel, [ux, uy]: Pixel): Pixel {
+  const side = (inside[0] - from[0]) * -uy + (inside[1] - from[1]) * ux;
+  return side > 0 ? [uy, -ux] : [-uy, ux];
+}
+
+function shifted([x, y]: Pixel, [ux, uy]: Pixel, by_px: number): Pixel {
+  return [x + ux * by_px, y + uy * by_px];
+}
+
+/** Text that begins at a pixel and extends in a direction. */
+function align(pen: CanvasRenderingContext2D, [ux, uy]: Pixel): void {
+  pen.textAlign = ux > kSlant ? 'left' : ux < -kSlant ? 'right' : 'center';
+  pen.textBaseline = uy > kSlant ? 'top' : uy < -kSlant ? 'bottom' : 'middle';
+}

@@ -1,0 +1,241 @@
+// Errors of each estimator over repeated flights: box plot, histogram, and the single flights.
+import { formatNumber } from '../../store/format';
+import type { ErrorAxis } from '../../store/runs/error_axis';
+import { axisTicks, errorAxis, histogram, placeOn } from '../../store/runs/error_axis';
+import type { Repeats } from '../../store/runs/repeats';
+import { kSameFlight, repeatChoices, repeatedRuns, repeatsOf } from '../../store/runs/repeats';
+import type { State, Topic } from '../../store/state';
+import { estimateColour } from '../colours';
+import { h, rebuild } from '../dom';
+import type { Panel } from '../panel';
+import { makePanel } from '../panel';
+import { svg } from '../svg';
+import type { Context, View } from '../view';
+
+const kRow_px = 58;
+const kBox_px = 18;
+const kBars_px = 26;
+const kAxis_px = 36;
+const kLabels_px = 132;
+const kRight_px = 24;
+const kBins = 24;
+const kLeastWidth_px = 60;
+
+export class RepeatsPanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly choice = h('select', {
+    id: 'repeats-choice',
+    'aria-label': 'Runs that are compared',
+    title: 'Runs whose position RMSE, alignment init_scale, is compared',
+  });
+  private readonly drawing = h('div', { class: 'repeats' });
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('repeats', 'Repeated flights');
+    this.panel.tools.append(this.choice);
+    this.panel.body.append(this.drawing);
+    this.root = this.panel.root;
+    const draw = () => this.draw(context.store.state);
+    this.choice.addEventListener('change', draw);
+    new ResizeObserver(draw).observe(this.panel.body);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (changed.has('lists') || changed.has('run')) this.draw(this.context.store.state);
+  }
+
+  private draw(state: State): void {
+    const runs = state.runs ?? [];
+    const choices = repeatChoices(runs);
+    const chosen = this.choice.value || kSameFlight;
+    rebuild(this.choice, JSON.stringify(choices), () =>
+      choices.map(({ value, label }) => h('option', { value }, label)),
+    );
+    const still = choices.some(({ value }) => value === chosen);
+    this.choice.value = still ? chosen : kSameFlight;
+    const compared = repeatedRuns(runs, this.choice.value, state.run);
+    const repeats = repeatsOf(compared);
+    const width_px = Math.max(kLeastWidth_px, this.panel.body.clientWidth - kLabels_px);
+    rebuild(this.drawing, JSON.stringify([repeats, width_px, state.run?.estimators]), () =>
+      repeats.length === 0 ? [] : [this.picture(repeats, width_px, state.run?.estimators ?? [])],
+    );
+    this.panel.showEmpty(repeats.length > 0 ? null : 'None of these runs is scored.');
+  }
+
+  private picture(repeats: readonly Repeats[], width_px: number, named: readonly string[]): Node {
+    const axis = errorAxis(repeats.flatMap(({ errors }) => errors.map(({ error_m }) => error_m)));
+    const height_px = repeats.length * kRow_px + kAxis_px;
+    const x_px = (error_m: number) => kLabels_px + placeOn(axis, error_m) * (width_px - kRight_px);
+    return svg(
+      'svg',
+      {
+        width: kLabels_px + width_px,
+        height: height_px,
+        role: 'img',
+        'aria-label': repeats.map(wordsOf).join('; '),
+      },
+      ...axisMarks(axis, x_px, repeats.length * kRow_px),
+      ...repeats.flatMap((one, i) =>
+        this.row(one, i, coloursOf(repeats, named)[i] ?? '', axis, x_px),
+      ),
+    );
+  }
+
+  private row(
+    { estimator, errors, summary, outcomes }: Repeats,
+    index: number,
+    colour: string,
+    axis: ErrorAxis,
+    x_px: (error_m: number) => number,
+  ): Node[] {
+    const top_px = index * kRow_px;
+    const middle_px = top_px + 6 + kBox_px / 2;
+    const counts = outcomes.map(([outcome, count]) => `${count} ${outcome}`).join(', ');
+    const labels = [
+      svg('text', { x: 9, y: top_px + 17, class: 'repeats-name' }, estimator),
+      svg('text', { x: 9, y: top_px + 32, class: 'repeats-note' }, counts, title(counts)),
+      svg('text', { x: 9, y: top_px + 46, class: 'repeats-note' }, medianText(summary)),
+    ];
+    if (summary === null) return labels;
+    const { least, q1, median, q3, most } = summary;
+    const line = (from: number, to: number) =>
+      svg('line', { x1: x_px(from), x2: x_px(to), y1: middle_px, y2: middle_px, stroke: colour });
+    const box = svg(
+      'g',
+      { 'data-box': estimator },
+      title(wordsOf({ estimator, errors, summary, outcomes })),
+      line(least, q1),
+      line(q3, most),
+      svg('rect', {
+        x: x_px(q1),
+        y: middle_px - kBox_px / 2,
+        width: Math.max(1, x_px(q3) - x_px(q1)),
+        height: kBox_px,
+        rx: 2,
+        stroke: colour,
+        fill: colour,
+        'fill-opacity': 0.18,
+      }),
+      svg('line', {
+        x1: x_px(median),
+        x2: x_px(median),
+        y1: middle_px - kBox_px / 2,
+        y2: middle_px + kBox_px / 2,
+        stroke: colour,
+        'stroke-width': 2.5,
+      }),
+    );
+    const flights = errors.map(({ run, error_m }) => this.flight(run, error_m, x_px, middle_px));
+    return [
+      ...labels,
+      ...bars(
+        errors.map(({ error_m }) => error_m),
+        axis,
+        top_px,
+        colour,
+        x_px,
+      ),
+      box,
+      ...flights,
+    ];
+  }
+
+  /** A single flight; a click shows it. */
+  private flight(
+    run: string,
+    error_m: number,
+    x_px: (error_m: number) => number,
+    y_px: number,
+  ): Node {
+    const dot = svg(
+      'circle',
+      { cx: x_px(error_m), cy: y_px, r: 3.5, class: 'repeats-flight', 'data-flight': run },
+      title(`${run}: ${formatNumber(error_m, 3)} m`),
+    );
+    dot.addEventListener('click', () => this.context.session.selectRun(run));
+    return dot;
+  }
+}
+
+/** Estimators of the main run have their colour in the plots, others the next ones. */
+function coloursOf(repeats: readonly Repeats[], named: readonly string[]): string[] {
+  let next = named.length;
+  return repeats.map(({ estimator }) => {
+    const index = named.indexOf(estimator);
+    return estimateColour(index >= 0 ? index : next++);
+  });
+}
+
+function bars(
+  errors_m: readonly number[],
+  axis: ErrorAxis,
+  top_px: number,
+  colour: string,
+  x_px: (error_m: number) => number,
+): Node[] {
+  const counts = histogram(axis, errors_m, kBins);
+  const most = Math.max(...counts);
+  const left_px = x_px(axis.low);
+  const step_px = (x_px(axis.high) - left_px) / kBins;
+  const bottom_px = top_px + kRow_px - 4;
+  return counts.flatMap((count, bin) =>
+    count === 0
+      ? []
+      : [
+          svg(
+            'rect',
+            {
+              x: left_px + bin * step_px + 0.5,
+              y: bottom_px - (kBars_px * count) / most,
+              width: Math.max(1, step_px - 1),
+              height: (kBars_px * count) / most,
+              fill: colour,
+              'fill-opacity': 0.45,
+            },
+            title(`${count} ${count === 1 ? 'flight' : 'flights'}`),
+          ),
+        ],
+  );
+}
+
+function axisMarks(axis: ErrorAxis, x_px: (error_m: number) => number, bottom_px: number): Node[] {
+  const scale = axis.logarithmic ? ', logarithmic' : '';
+  const middle_px = (x_px(axis.low) + x_px(axis.high)) / 2;
+  return [
+    ...axisTicks(axis).flatMap((tick) => [
+      svg('line', {
+        x1: x_px(tick),
+        x2: x_px(tick),
+        y1: 0,
+        y2: bottom_px,
+        class: 'repeats-grid',
+      }),
+      svg(
+        'text',
+        { x: x_px(tick), y: bottom_px + 13, class: 'repeats-tick' },
+        String(Number(tick.toPrecision(6))),
+      ),
+    ]),
+    svg(
+      'text',
+      { x: middle_px, y: bottom_px + 28, class: 'repeats-tick' },
+      `Position RMSE [m]${scale}`,
+    ),
+  ];
+}
+
+function medianText(summary: Repeats['summary']): string {
+  return summary === null ? 'no error' : `median ${formatNumber(summary.median, 3)} m`;
+}
+
+function wordsOf({ estimator, errors, summary }: Repeats): string {
+  if (summary === null) return `${estimator}: no flight with an error`;
+  const { least, q1, median, q3, most } = summary;
+  const [a, b, c, d, e] = [least, q1, median, q3, most].map((value) => formatNumber(value, 3));
+  return `${estimator}, ${errors.length} flights: median ${c} m, quartiles ${b} and ${d} m, from ${a} to ${e} m`;
+}
+
+function title(text: string): SVGElement {
+  return svg('title', {}, text);
+}

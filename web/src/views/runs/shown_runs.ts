@@ -1,0 +1,120 @@
+// The runs that are shown together: their tracks, their offsets on the clock, which one is the main.
+import { formatNumber } from '../../store/format';
+import { distinguishingNames } from '../../store/run_names';
+import type { State } from '../../store/state';
+import type { Track } from '../../store/tracks';
+import { runLetter, tracksOf } from '../../store/tracks';
+import type { WatchedRun } from '../../store/watched_run';
+import { curveStyle, trackHue } from '../colours';
+import { h, rebuild } from '../dom';
+import { icon } from '../icons';
+import type { Context } from '../view';
+
+/** Empty while one run is shown, whose entry in the list is enough. */
+export class ShownRuns {
+  readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown together' });
+
+  /** An offset is being typed: new entries would throw it away. */
+  private typing = false;
+  /** Inputs of the offsets, by run. */
+  private readonly offsets = new Map<string, HTMLInputElement>();
+
+  constructor(private readonly context: Context) {}
+
+  draw(state: State): void {
+    if (this.typing) return;
+    const { watched, runId } = state;
+    const tracks = tracksOf(state);
+    const drawn = tracks.map(({ label, shown }) => [label, shown]);
+    const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
+    const runs = watched.map(({ id }) => [id, names.get(id)]);
+    rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
+      watched.length < 2
+        ? []
+        : watched.map((one) =>
+            this.entry(
+              one,
+              names.get(one.id) ?? one.id,
+              runLetter(state, one),
+              tracks.filter(({ run }) => run === one),
+            ),
+          ),
+    );
+    for (const { id, offset_ns } of watched) {
+      const offset = this.offsets.get(id);
+      const text = offsetText(offset_ns);
+      if (offset !== undefined && offset.value !== text) offset.value = text;
+    }
+    this.root.hidden = watched.length < 2;
+  }
+
+  private entry(watched: WatchedRun, name: string, letter: string, tracks: Track[]): HTMLElement {
+    const { session, store } = this.context;
+    const { id, offset_ns } = watched;
+    const isMain = store.state.main === watched;
+    const offset = h('input', {
+      type: 'number',
+      step: 0.1,
+      value: offsetText(offset_ns),
+      'aria-label': `Offset of run ${letter} in seconds`,
+      title: 'Time of the clock at which this run begins [s]',
+      oninput: () => {
+        this.typing = true;
+        const seconds = offset.valueAsNumber;
+        if (Number.isFinite(seconds)) session.setOffset(id, Math.round(seconds * 1e9));
+      },
+      onblur: () => {
+        this.typing = false;
+        this.draw(store.state);
+      },
+    });
+    this.offsets.set(id, offset);
+    return h(
+      'li',
+      { class: 'shown-run', 'data-shown-run': id, 'aria-current': isMain ? 'true' : 'false' },
+      h(
+        'button',
+        {
+          class: 'shown-title',
+          title: `${name} (${id}): show its pictures and timeline`,
+          onclick: () => session.makeMain(id),
+        },
+        h('b', { class: 'run-letter' }, letter),
+        h('span', {}, name),
+      ),
+      h('label', { class: 'shown-offset' }, offset, h('span', { class: 'unit' }, 's')),
+      h(
+        'button',
+        {
+          class: 'icon-button',
+          title: `Remove run ${letter} from the comparison`,
+          'aria-label': `Remove run ${letter} from the comparison`,
+          onclick: () => session.removeRun(id),
+        },
+        icon('close'),
+      ),
+      h('div', { class: 'shown-tracks' }, ...tracks.map((track) => this.trackButton(track))),
+    );
+  }
+
+  private trackButton(track: Track): HTMLElement {
+    const { run, name, label, shown } = track;
+    const { colour } = curveStyle(trackHue(track));
+    const text = name === '' ? 'truth' : name;
+    return h(
+      'button',
+      {
+        class: 'track-button',
+        'aria-pressed': shown ? 'true' : 'false',
+        title: `${shown ? 'Hide' : 'Show'} ${label} in the plots`,
+        onclick: () => this.context.session.showTrack(run.id, name, !shown),
+      },
+      h('i', { style: `background:${colour}` }),
+      text,
+    );
+  }
+}
+
+function offsetText(offset_ns: number): string {
+  return formatNumber(offset_ns / 1e9, 3).replace('−', '-');
+}

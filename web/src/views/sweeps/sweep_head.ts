@@ -1,0 +1,181 @@
+// Title, state and progress of a sweep, and the buttons that cancel and continue it.
+import type { SweepEntry, SweepState } from '../../protocol/sweep_types';
+import { formatDate, formatDuration, formatPercent } from '../../store/format';
+import { h, rebuild } from '../dom';
+import type { Context } from '../view';
+
+const kConfirm_ms = 4000;
+
+/** States of runs with the same colour. */
+const kRunStatus: Record<SweepPhase, string> = {
+  flying: 'running',
+  cancelling: 'cancelled',
+  failed: 'failed',
+  stopped: 'cancelled',
+  complete: 'completed',
+};
+
+export class SweepHead {
+  readonly root: HTMLElement;
+  private readonly title = h('div', { class: 'sweep-title' });
+  private readonly buttons = h('div', { class: 'sweep-buttons' });
+  private readonly progress = h('div', { class: 'sweep-progress', 'data-role': 'sweep-progress' });
+  /** The sweep whose cancelling awaits confirmation. */
+  private confirming: string | null = null;
+  private shown: SweepState | null = null;
+  private all: readonly SweepEntry[] = [];
+
+  constructor(private readonly context: Context) {
+    this.root = h(
+      'div',
+      { class: 'sweep-head' },
+      h('div', { class: 'sweep-top' }, this.title, this.buttons),
+      this.progress,
+    );
+  }
+
+  /** @param all  sweeps of the server */
+  draw(shown: SweepState, all: readonly SweepEntry[]): void {
+    this.shown = shown;
+    this.all = all;
+    this.drawTitle(shown);
+    this.drawButtons(shown);
+    this.drawProgress(shown);
+  }
+
+  private drawTitle({ sweep }: SweepState): void {
+    const state = stateOf(sweep);
+    rebuild(this.title, JSON.stringify([sweep.name, sweep.title, sweep.description, state]), () => [
+      h(
+        'h3',
+        {},
+        sweep.title === '' ? sweep.name : sweep.title,
+        h(
+          'span',
+          { class: 'chip small', 'data-role': 'sweep-state', 'data-status': kRunStatus[state] },
+          state,
+        ),
+      ),
+      h('p', {}, sweep.description ?? ''),
+    ]);
+  }
+
+  private drawButtons({ sweep, table }: SweepState): void {
+    const asked = this.confirming === sweep.name;
+    const other = this.all.find(({ here, name }) => here !== null && name !== sweep.name);
+    const unfinished = sweep.progress === null || sweep.progress.passed < sweep.progress.most;
+    const failed = table?.failed ?? 0;
+    const key = [sweep.name, sweep.flying, sweep.here, asked, other?.name ?? null];
+    rebuild(this.buttons, JSON.stringify([key, unfinished, failed]), () => {
+      if (sweep.here !== null) return [this.cancelButton(sweep, asked)];
+      if (sweep.flying) return [];
+      const hint =
+        other === undefined ? null : `${other.name} is flying: one sweep flies at a time`;
+      return [
+        ...(unfinished || failed > 0 ? [this.continueButton(sweep, unfinished, hint)] : []),
+        h(
+          'button',
+          {
+            class: 'secondary',
+            'data-role': 'extend-sweep',
+            title:
+              'Change the sweep, for example with more values or repeats, and fly what it lacks',
+            onclick: () => void this.context.sweeps.form.openSweep(sweep.name),
+          },
+          'Extend',
+        ),
+      ];
+    });
+  }
+
+  private cancelButton({ name, here }: SweepEntry, asked: boolean): HTMLElement {
+    const cancelling = here === 'cancelling';
+    return h(
+      'button',
+      {
+        class: asked && !cancelling ? 'secondary danger' : 'secondary',
+        'data-role': 'cancel-sweep',
+        disabled: cancelling,
+        title: asked
+          ? 'Click again to end the flights in progress; results stay'
+          : 'End the flights in progress; results stay, and the sweep can be continued',
+        onclick: () => {
+          if (asked) void this.context.sweeps.cancel(name);
+          this.ask(asked ? null : name);
+        },
+      },
+      cancelling ? 'Cancelling' : asked ? 'Cancel the sweep?' : 'Cancel',
+    );
+  }
+
+  private continueButton(
+    { name }: SweepEntry,
+    unfinished: boolean,
+    hint: string | null,
+  ): HTMLElement {
+    return h(
+      'button',
+      {
+        class: 'primary',
+        'data-role': 'continue-sweep',
+        disabled: hint !== null,
+        title: hint ?? 'Fly what the sweep lacks; failed flights are tried again',
+        onclick: () => void this.context.sweeps.continue(name),
+      },
+      unfinished ? 'Continue' : 'Fly failed flights again',
+    );
+  }
+
+  private ask(name: string | null): void {
+    this.confirming = name;
+    if (this.shown !== null) this.drawButtons(this.shown);
+    if (name === null) return;
+    window.setTimeout(() => {
+      if (this.confirming === name) this.ask(null);
+    }, kConfirm_ms);
+  }
+
+  private drawProgress({ sweep, table }: SweepState): void {
+    const { progress, problem } = sweep;
+    const texts: string[] = [];
+    if (progress !== null) {
+      const { passed, most } = progress;
+      texts.push(passed < most ? `${passed} of ${most} flights` : `${most} flights`);
+      if (sweep.flying) {
+        if (progress.left_s > 0) texts.push(`about ${formatDuration(progress.left_s)} left`);
+        texts.push(`${formatDuration(progress.spent_s)} flown by this call`);
+      }
+    }
+    if (sweep.flying && sweep.here === null) texts.push('flown by another process');
+    if (table !== null && table.failed > 0) texts.push(`${table.failed} flights failed`);
+    if (table !== null && table.unreadable > 0) texts.push(`${table.unreadable} runs unreadable`);
+    texts.push(`last result ${formatDate(sweep.changed_utc)}`);
+    const share = progress === null || progress.most === 0 ? 0 : progress.passed / progress.most;
+    rebuild(this.progress, JSON.stringify([texts, share, sweep.flying, problem]), () => [
+      ...(sweep.flying
+        ? [
+            h('progress', {
+              value: share,
+              max: 1,
+              'aria-label': 'Flights that are over',
+              title: formatPercent(share, 0),
+            }),
+          ]
+        : []),
+      h('span', {}, texts.join(' · ')),
+      ...(problem === null
+        ? []
+        : [h('span', { class: 'sweep-problem', 'data-role': 'sweep-problem' }, problem)]),
+    ]);
+  }
+}
+
+export type SweepPhase = 'flying' | 'cancelling' | 'failed' | 'stopped' | 'complete';
+
+/** `stopped`: cancelled or killed before its end. */
+export function stateOf({ flying, here, problem, progress }: SweepEntry): SweepPhase {
+  if (here !== null) return here;
+  if (flying) return 'flying';
+  if (problem !== null) return 'failed';
+  return progress === null || progress.passed < progress.most ? 'stopped' : 'complete';
+}
