@@ -23,7 +23,7 @@ const skip = serverMissing() || browserMissing();
 
 const kSweep = {
   format_version: 1,
-  title: 'Two heights and a blackout',
+  title: 'Two heights, two airspeeds and a blackout',
   scenario: sourceFile('scenarios/course.json'),
   set: { duration_s: 4, 'camera.width_px': 320, 'camera.height_px': 240 },
   axes: [
@@ -40,6 +40,7 @@ const kSweep = {
         { value: 'blackout', set: { faults: [{ kind: 'blackout', at_s: 0 }] } },
       ],
     },
+    { path: 'flight.course.airspeed_m_s', label: 'Airspeed', unit: 'm/s', values: [20, 25] },
   ],
   estimators: [
     { name: 'feature', type: 'feature' },
@@ -124,7 +125,7 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await matrix('feature').locator('.sweep-cell').first().waitFor({ timeout: kPatience_ms });
     assert.equal(await flown, 0);
     await page.waitForFunction(
-      () => document.querySelectorAll('.sweep-matrix .sweep-cell').length === 8,
+      () => document.querySelectorAll('.sweep-matrix .sweep-cell').length === 16,
       null,
       { timeout: kPatience_ms },
     );
@@ -133,19 +134,37 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
   step('shows outcomes, rates and errors of each cell', async () => {
     const texts = () => matrix('feature').locator('.sweep-cell').allInnerTexts();
     const days = (await texts()).filter((text) => text === 'ok').length;
-    assert.equal(days, 2, (await texts()).join());
-    assert.equal((await texts()).filter((text) => text === 'no start').length, 2);
+    assert.equal(days, 4, (await texts()).join());
+    assert.equal((await texts()).filter((text) => text === 'no start').length, 4);
     await page.locator('[data-role=sweep-figure]').selectOption('success');
     await matrix('feature').locator('.sweep-cell', { hasText: '100' }).first().waitFor();
-    assert.deepEqual((await texts()).toSorted(), ['0', '0', '100', '100']);
+    assert.deepEqual((await texts()).toSorted(), [...Array(4).fill('0'), ...Array(4).fill('100')]);
     await page.locator('[data-role=sweep-figure]').selectOption('paper_position');
     await matrix('feature').locator('.sweep-cell', { hasText: 'X' }).first().waitFor();
-    assert.equal((await texts()).filter((text) => text === 'X').length, 2);
+    assert.equal((await texts()).filter((text) => text === 'X').length, 4);
     await page.locator('[data-role=sweep-rows]').selectOption('flight.course.height_agl_m');
     // The axes change places.
     await dashboard.until(
       () => document.querySelector('[data-role=sweep-columns]').value === 'light',
     );
+  });
+
+  step('shows the values of a third axis side by side, or one of them', async () => {
+    const values = () =>
+      page
+        .locator('.sweep-matrix[data-estimator=feature]')
+        .evaluateAll((all) => all.map((one) => one.dataset.panelValue ?? ''));
+    assert.deepEqual(await values(), ['Airspeed 20 m/s', 'Airspeed 25 m/s']);
+    await dashboard.screenshot('sweep_three_axes_1280x800');
+    await page.locator('[data-role=sweep-panels]').selectOption('');
+    await dashboard.until(
+      () => document.querySelectorAll('.sweep-matrix[data-estimator=feature]').length === 1,
+    );
+    await page
+      .locator('[data-role="sweep-fix-flight.course.airspeed_m_s"]')
+      .selectOption({ label: '25 m/s' });
+    await page.locator('[data-role=sweep-panels]').selectOption({ label: 'Airspeed' });
+    await page.locator('[data-panel-value="Airspeed 25 m/s"]').first().waitFor();
   });
 
   const state = (text) =>
@@ -232,7 +251,7 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await page.emulateMedia({ colorScheme: 'light' });
     await page.locator('.sweep-form button', { hasText: 'Close' }).click();
     await page.locator('[data-sweep=night]').click();
-    await matrix('hold').waitFor();
+    await matrix('hold').first().waitFor();
   });
 
   step('opens the flight of a cell', async () => {

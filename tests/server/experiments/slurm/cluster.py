@@ -35,9 +35,10 @@ def free_port() -> int:
 
 
 class Cluster:
-    """One node of two processors, a partition `low` and a partition `high` that preempts it."""
+    """One node, a partition `low` and a partition `high` that preempts it."""
 
-    def __init__(self, folder: pathlib.Path):
+    def __init__(self, folder: pathlib.Path, processors: int = 2):
+        """`processors`: how many Slurm believes the node to have, one for each task."""
         self.folder = folder
         self.node = socket.gethostname()
         self.processes: dict[str, subprocess.Popen] = {}
@@ -74,12 +75,13 @@ PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 SchedulerParameters=bf_interval=1,sched_interval=2,requeue_setup_env_fail
 ReturnToService=2
+SlurmdParameters=config_overrides
 KillWait=3
 MinJobAge=5
 InactiveLimit=0
 MaxArraySize=1001
 MaxJobCount=5000
-NodeName={self.node} NodeAddr=127.0.0.1 CPUs=2 CoresPerSocket=2 ThreadsPerCore=1 RealMemory={memory_mib}
+NodeName={self.node} NodeAddr=127.0.0.1 CPUs={processors} CoresPerSocket={processors} ThreadsPerCore=1 RealMemory={memory_mib}
 PartitionName=low Nodes={self.node} Default=YES PriorityTier=1 PreemptMode=REQUEUE OverSubscribe=NO
 PartitionName=high Nodes={self.node} PriorityTier=10 PreemptMode=OFF OverSubscribe=NO
 """)

@@ -35,11 +35,12 @@ def sweep_file(folder: pathlib.Path, airspeeds: list[float], duration_s: float) 
 class Sweep:
     """`overfly sweep --executor slurm` in a process of its own."""
 
-    def __init__(self, overfly: str, file: pathlib.Path, out: pathlib.Path, *options: str):
+    def __init__(self, overfly: str, file: pathlib.Path, out: pathlib.Path, *options: str,
+                 jobs: int = 2):
         self.out = out
         self.log = out.with_suffix(".log")
         self.words = [overfly, "sweep", str(file), "--out", str(out), "--executor", "slurm",
-                      "--jobs", "2", "--lease-s", str(LEASE_S), *options]
+                      "--jobs", str(jobs), "--lease-s", str(LEASE_S), *options]
         self.start()
 
     def start(self) -> None:

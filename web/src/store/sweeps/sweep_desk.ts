@@ -88,6 +88,13 @@ export class SweepDesk {
     this.changed();
   }
 
+  /** The axis whose values have matrices next to each other; '' = none. */
+  choosePanels(name: string): void {
+    this.page.panels = name;
+    this.page.cell = null;
+    this.changed();
+  }
+
   fix(axis: string, value: string): void {
     this.page.fixed = { ...this.page.fixed, [axis]: value };
     this.page.cell = null;
@@ -109,6 +116,7 @@ export class SweepDesk {
       shown: null,
       columns: null,
       rows: null,
+      panels: null,
       fixed: {},
       cell: null,
     });

@@ -1,4 +1,5 @@
-// The cells of a sweep as matrices: one for each estimator, along two of its axes.
+// The cells of a sweep as matrices along two of its axes: one for each estimator, and for each value of a
+// third axis.
 import type { Json } from '../../protocol/rest_types';
 import type {
   SweepAxis,
@@ -38,16 +39,26 @@ export interface MatrixCell {
 export interface Matrix {
   estimator: string;
   baseline: boolean;
+  /** Value of the axis whose values have a matrix each, with label and unit; '' = there is none. */
+  panel: string;
   rows: MatrixCell[][];
 }
 
 export interface Matrices {
   columns: SweepAxis;
   rows: SweepAxis;
+  /** The axis whose values have a matrix each; null = none. */
+  panels: SweepAxis | null;
+  /** Axes that may be `panels`. */
+  panelChoices: SweepAxis[];
   /** Other axes with several values, and the chosen one of each as JSON text. */
   others: { axis: SweepAxis; value: string }[];
-  estimators: Matrix[];
+  /** Those of one estimator follow each other. */
+  matrices: Matrix[];
 }
+
+/** More matrices next to each other are shown only when asked for. */
+const kMostPanels = 8;
 
 const kOneRow: SweepAxis = { name: '', label: '', unit: '', values: [null] };
 
@@ -65,8 +76,10 @@ export function matricesOf({ sweep, table }: SweepState, page: SweepPage): Matri
   const columns = order.find(({ name }) => name === page.columns) ?? widest;
   const named = order.find(({ name }) => name === page.rows && name !== columns.name);
   const down = named ?? order.find(({ name }) => name !== columns.name) ?? kOneRow;
-  const others = several
-    .filter(({ name }) => name !== columns.name && name !== down.name)
+  const panelChoices = several.filter(({ name }) => name !== columns.name && name !== down.name);
+  const panels = panelsOf(panelChoices, page.panels);
+  const others = panelChoices
+    .filter((axis) => axis !== panels)
     .map((axis) => {
       const texts = axis.values.map((value) => JSON.stringify(value));
       const wanted = page.fixed[axis.name];
@@ -80,19 +93,29 @@ export function matricesOf({ sweep, table }: SweepState, page: SweepPage): Matri
   const known = new Map(rows.map((row) => [`${row.estimator}\n${cellKey(row.cell)}`, row]));
   const names = sweep.estimators.length > 0 ? sweep.estimators : namesOf(rows);
   const limits = figureLimits(rows, page.figure);
-  const estimators = names.map((estimator) => ({
-    estimator,
-    baseline: rows.some((row) => row.estimator === estimator && row.baseline),
-    rows: down.values.map((low) =>
-      columns.values.map((value) => {
-        const cell = { ...base, [columns.name]: value };
-        if (down !== kOneRow) cell[down.name] = low;
-        const key = cellKey(cell);
-        return matrixCell(key, cell, known.get(`${estimator}\n${key}`), page.figure, limits);
-      }),
-    ),
-  }));
-  return { columns, rows: down, others, estimators };
+  const matrices = names.flatMap((estimator) =>
+    (panels?.values ?? [null]).map((panel) => ({
+      estimator,
+      baseline: rows.some((row) => row.estimator === estimator && row.baseline),
+      panel: panels === null ? '' : `${panels.label} ${valueText(panel, panels.unit)}`,
+      rows: down.values.map((low) =>
+        columns.values.map((value) => {
+          const cell = { ...base, [columns.name]: value };
+          if (down !== kOneRow) cell[down.name] = low;
+          if (panels !== null) cell[panels.name] = panel;
+          const key = cellKey(cell);
+          return matrixCell(key, cell, known.get(`${estimator}\n${key}`), page.figure, limits);
+        }),
+      ),
+    })),
+  );
+  return { columns, rows: down, panels, panelChoices, others, matrices };
+}
+
+function panelsOf(choices: readonly SweepAxis[], wanted: string | null): SweepAxis | null {
+  const named = choices.find(({ name }) => name === wanted);
+  if (named !== undefined || wanted === '') return named ?? null;
+  return choices.find(({ values }) => values.length <= kMostPanels) ?? null;
 }
 
 /** The flights of a cell, one entry for each estimator. */

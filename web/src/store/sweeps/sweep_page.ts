@@ -14,6 +14,8 @@ export interface SweepPage {
   /** Names of the axes along the columns and rows; null = chosen by the page. */
   columns: string | null;
   rows: string | null;
+  /** Name of the axis whose values have matrices next to each other; '' = none, null = chosen by the page. */
+  panels: string | null;
   /** Values of the other axes, as JSON text. */
   fixed: Record<string, string>;
   /** The cell whose flights are listed, as JSON text. */
@@ -32,6 +34,7 @@ export function initialSweepPage(): SweepPage {
     figure: 'outcome',
     columns: null,
     rows: null,
+    panels: null,
     fixed: {},
     cell: null,
     error: null,

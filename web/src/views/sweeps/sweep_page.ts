@@ -117,9 +117,9 @@ export class SweepPageView implements View {
     const { figure } = this.context.store.state.sweepPage;
     this.tools.hidden = matrices === null;
     if (matrices === null) return;
-    const { columns, rows, others } = matrices;
-    const axes = [columns, ...(rows.name === '' ? [] : [rows]), ...others.map(({ axis }) => axis)];
-    const key = JSON.stringify([figure, columns.name, rows.name, others, axes]);
+    const { columns, rows, panels, panelChoices, others } = matrices;
+    const axes = [columns, ...(rows.name === '' ? [] : [rows]), ...panelChoices];
+    const key = JSON.stringify([figure, columns.name, rows.name, panels?.name, others, axes]);
     rebuild(this.tools, key, () => [
       labelled(
         'Show',
@@ -147,6 +147,19 @@ export class SweepPageView implements View {
               ),
             ),
           )),
+      ...(panelChoices.length === 0
+        ? []
+        : [
+            labelled(
+              'Side by side',
+              select(
+                'sweep-panels',
+                [['', 'none'], ...panelChoices.map(({ name, label }) => [name, label] as const)],
+                panels?.name ?? '',
+                (value) => this.context.sweeps.choosePanels(value),
+              ),
+            ),
+          ]),
       ...others.map(({ axis, value }) =>
         labelled(
           axis.label,
@@ -166,7 +179,7 @@ export class SweepPageView implements View {
     this.matrices.hidden = matrices === null;
     if (matrices === null) return;
     rebuild(this.matrices, JSON.stringify([matrices, figure, cell]), () =>
-      matrices.estimators.map((matrix) => this.matrix(matrices, matrix, figure)),
+      matrices.matrices.map((matrix) => this.matrix(matrices, matrix, figure)),
     );
   }
 
@@ -175,13 +188,18 @@ export class SweepPageView implements View {
     const corner = rows.name === '' ? '' : axisTitle(rows);
     return h(
       'table',
-      { class: 'sweep-matrix', 'data-estimator': matrix.estimator },
+      {
+        class: 'sweep-matrix',
+        'data-estimator': matrix.estimator,
+        'data-panel-value': matrix.panel === '' ? undefined : matrix.panel,
+      },
       h(
         'caption',
         {},
         h('b', {}, matrix.estimator),
         matrix.baseline ? h('span', { class: 'chip small' }, 'baseline') : null,
-        unit === '' ? null : h('span', { class: 'unit' }, ` ${unit}`),
+        matrix.panel === '' ? null : h('span', { class: 'panel-value' }, matrix.panel),
+        unit === '' ? null : h('span', { class: 'unit' }, ` [${unit}]`),
       ),
       h(
         'thead',

@@ -75,25 +75,50 @@ const flown = [
 ];
 
 describe('matricesOf', () => {
-  it('puts the axis with most values along the columns, and fixes the third', () => {
+  it('puts the axis with most values along the columns, and the third side by side', () => {
     const made = matricesOf(state(flown, planned), initialSweepPage());
+    expect(made?.panels?.name).toBe('air');
+    expect(made?.others).toEqual([]);
+    expect(made?.matrices.map(({ estimator, panel }) => [estimator, panel])).toEqual([
+      ['feature', 'air calm'],
+      ['feature', 'air gusts'],
+      ['hold', 'air calm'],
+      ['hold', 'air gusts'],
+    ]);
+    const texts = made?.matrices.map(({ rows }) => rows.flat().map(({ text }) => text));
+    expect(texts?.slice(0, 2)).toEqual([
+      ['ok', 'lost', '', 'ok', '', ''],
+      ['lost', '', '', '', '', ''],
+    ]);
+  });
+
+  it('has one matrix for each estimator where no axis is wanted side by side, and fixes the third', () => {
+    const made = matricesOf(state(flown, planned), { ...initialSweepPage(), panels: '' });
+    expect(made?.panels).toBeNull();
+    expect(made?.panelChoices.map(({ name }) => name)).toEqual(['air']);
     expect(made?.columns.name).toBe('h');
     expect(made?.rows.name).toBe('v');
     expect(made?.others.map(({ axis, value }) => [axis.name, value])).toEqual([['air', '"calm"']]);
-    expect(made?.estimators.map(({ estimator }) => estimator)).toEqual(['feature', 'hold']);
-    const texts = made?.estimators[0]?.rows.map((cells) => cells.map(({ text }) => text));
+    expect(made?.matrices.map(({ estimator }) => estimator)).toEqual(['feature', 'hold']);
+    const texts = made?.matrices[0]?.rows.map((cells) => cells.map(({ text }) => text));
     expect(texts).toEqual([
       ['ok', 'lost', ''],
       ['ok', '', ''],
     ]);
-    expect(made?.estimators[0]?.rows[0]?.[2]?.hint).toBe('not flown yet');
-    expect(made?.estimators[0]?.rows[0]?.[1]?.failed).toBe(true);
+    expect(made?.matrices[0]?.rows[0]?.[2]?.hint).toBe('not flown yet');
+    expect(made?.matrices[0]?.rows[0]?.[1]?.failed).toBe(true);
   });
 
   it('follows the choice of axes and of the fixed value', () => {
-    const page = { ...initialSweepPage(), columns: 'v', rows: 'h', fixed: { air: '"gusts"' } };
+    const page = {
+      ...initialSweepPage(),
+      columns: 'v',
+      rows: 'h',
+      panels: '',
+      fixed: { air: '"gusts"' },
+    };
     const made = matricesOf(state(flown, planned), page);
-    const texts = made?.estimators[0]?.rows.map((cells) => cells.map(({ text }) => text));
+    const texts = made?.matrices[0]?.rows.map((cells) => cells.map(({ text }) => text));
     expect(texts).toEqual([
       ['lost', ''],
       ['', ''],
@@ -101,10 +126,19 @@ describe('matricesOf', () => {
     ]);
   });
 
+  it('shows many values side by side only when asked for', () => {
+    const air = Array.from({ length: 9 }, (_, i) => `a${i}`);
+    const values = { h: Array.from({ length: 10 }, (_, i) => i), v: [10, 25], air };
+    const page = { ...initialSweepPage(), columns: 'h', rows: 'v' };
+    expect(matricesOf(state(flown, values), page)?.panels).toBeNull();
+    const asked = matricesOf(state(flown, values), { ...page, panels: 'air' });
+    expect(asked?.matrices).toHaveLength(2 * 9);
+  });
+
   it('shades errors between the least and the greatest, and marks with X what has none', () => {
-    const page = { ...initialSweepPage(), figure: 'sim3_position' as const };
+    const page = { ...initialSweepPage(), panels: '', figure: 'sim3_position' as const };
     const made = matricesOf(state(flown, planned), page);
-    const cells = made?.estimators[0]?.rows.flat() ?? [];
+    const cells = made?.matrices[0]?.rows.flat() ?? [];
     expect(cells.map(({ text }) => text)).toEqual(['0.100', 'X', '', '10.0', '', '']);
     expect(cells[0]?.share).toBeCloseTo(1);
     expect(cells[1]?.share).toBeNull();
@@ -122,7 +156,7 @@ describe('matricesOf', () => {
     const one = state([row({ h: 50 }, 'feature', 1, 1)], { h: [50, 100], v: [], air: [] });
     const made = matricesOf(one, initialSweepPage());
     expect(made?.rows.name).toBe('');
-    expect(made?.estimators[0]?.rows.map((cells) => cells.map(({ text }) => text))).toEqual([
+    expect(made?.matrices[0]?.rows.map((cells) => cells.map(({ text }) => text))).toEqual([
       ['ok', ''],
     ]);
   });
@@ -134,7 +168,7 @@ describe('matricesOf', () => {
     });
     const shown = state([repeated], { h: [50, 100], v: [], air: [] });
     const text = (figure: SweepFigure) =>
-      matricesOf(shown, { ...initialSweepPage(), figure })?.estimators[0]?.rows[0]?.[0]?.text;
+      matricesOf(shown, { ...initialSweepPage(), figure })?.matrices[0]?.rows[0]?.[0]?.text;
     expect(text('outcome')).toBe('ok 2/3');
     expect(text('success')).toBe('67');
   });
@@ -144,7 +178,7 @@ describe('rowsOfCell', () => {
   it('finds the flights whatever the order of the fields', () => {
     const shown = state(flown, planned);
     const made = matricesOf(shown, initialSweepPage());
-    const key = made?.estimators[0]?.rows[0]?.[1]?.key ?? '';
+    const key = made?.matrices[0]?.rows[0]?.[1]?.key ?? '';
     expect(rowsOfCell(shown, key).map(({ outcomes }) => outcomes)).toEqual([{ LOST: 1 }]);
   });
 });
