@@ -6,6 +6,8 @@
 #include <utility>
 
 #ifdef OVERFLY_V4L2
+#include <dlfcn.h>
+
 extern "C" {
 #include <libavdevice/avdevice.h>
 }
@@ -38,6 +40,24 @@ Access access_of(LiveKind kind) {
   if (kind == LiveKind::kRtsp) return {"rtsp,rtp,tcp,udp", "rtsp"};
   if (kind == LiveKind::kV4l2) return {"file", "video4linux2,v4l2"};
   return {"http,tcp", "mpjpeg,mjpeg,jpeg_pipe,mpegts,matroska,webm"};
+}
+
+/// Makes FFmpeg's V4L2 format known. Its library is loaded only here: with it come 70 others for
+/// sound and windows, which would cost each start of the program a quarter of its time.
+Status register_v4l2() {
+#ifdef OVERFLY_V4L2
+  constexpr const char* kLibrary = "libavdevice.so." AV_STRINGIFY(LIBAVDEVICE_VERSION_MAJOR);
+  // Stays loaded: the format is part of it.
+  void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
+  void* const symbol = dlsym(library, "avdevice_register_all");
+  if (symbol == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
+  reinterpret_cast<decltype(&avdevice_register_all)>(symbol)();
+  return {};
+#else
+  return Error{ErrorCode::kUnsupported,
+               "this build opens no V4L2 devices: install libavdevice-dev and build again"};
+#endif
 }
 
 class Options {
@@ -95,12 +115,11 @@ class VideoStream final : public LiveImages {
   Status connect() {
     const AVInputFormat* format = nullptr;
     if (address_.kind == LiveKind::kV4l2) {
+      if (Status status = register_v4l2(); !status) return status.error().in(address_.name);
       format = av_find_input_format("v4l2");
       if (format == nullptr) {
         return Error{ErrorCode::kUnsupported,
-                     address_.name +
-                         ": this build opens no V4L2 devices: install libavdevice-dev "
-                         "and build again"};
+                     address_.name + ": FFmpeg's libraries here open no V4L2 devices"};
       }
     }
     AVFormatContext* context = avformat_alloc_context();
@@ -202,9 +221,6 @@ class VideoStream final : public LiveImages {
 Result<std::unique_ptr<LiveImages>> open_video_stream(const LiveAddress& address,
                                                       const std::atomic<bool>* cancel) {
   av_log_set_level(AV_LOG_QUIET);
-#ifdef OVERFLY_V4L2
-  avdevice_register_all();
-#endif
   auto stream = std::make_unique<VideoStream>(address, cancel);
   if (Status status = stream->open(); !status) return status.error();
   return std::unique_ptr<LiveImages>(std::move(stream));
