@@ -20,16 +20,34 @@ constexpr float kMaxTravelPx = 10.0F;
 
 using BorderPatch = std::array<float, static_cast<std::size_t>(kBorder) * kBorder>;
 
-float bilinear(const cv::Mat& image, float x, float y) {
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float ax = x - static_cast<float>(x0);
-  const float ay = y - static_cast<float>(y0);
-  const std::uint8_t* top = image.ptr<std::uint8_t>(y0) + x0;
-  const std::uint8_t* bottom = top + image.step;
-  return (1.0F - ay) * ((1.0F - ax) * top[0] + ax * top[1]) +
-         ay * ((1.0F - ax) * bottom[0] + ax * bottom[1]);
-}
+/// A line of samples, in steps that the compiler computes several at a time: where they lie, the
+/// four pixels around each, their mean by distance.
+struct SampleLine {
+  std::array<float, kBorder> x, y;
+
+  void read(const cv::Mat& image, float* out) const {
+    std::array<std::int32_t, kBorder> x0, y0;
+    std::array<float, kBorder> ax, ay, top_left, top_right, bottom_left, bottom_right;
+    for (int i = 0; i < kBorder; ++i) {
+      x0[i] = static_cast<std::int32_t>(x[i]);
+      y0[i] = static_cast<std::int32_t>(y[i]);
+      ax[i] = x[i] - static_cast<float>(x0[i]);
+      ay[i] = y[i] - static_cast<float>(y0[i]);
+    }
+    for (int i = 0; i < kBorder; ++i) {
+      const std::uint8_t* top = image.ptr<std::uint8_t>(y0[i]) + x0[i];
+      const std::uint8_t* bottom = top + image.step;
+      top_left[i] = top[0];
+      top_right[i] = top[1];
+      bottom_left[i] = bottom[0];
+      bottom_right[i] = bottom[1];
+    }
+    for (int i = 0; i < kBorder; ++i) {
+      out[i] = (1.0F - ay[i]) * ((1.0F - ax[i]) * top_left[i] + ax[i] * top_right[i]) +
+               ay[i] * ((1.0F - ax[i]) * bottom_left[i] + ax[i] * bottom_right[i]);
+    }
+  }
+};
 
 /// Samples a (P + 2)^2 patch around a centre with the warp applied.
 bool sample_warped(const cv::Mat& image,
@@ -55,13 +73,15 @@ bool sample_warped(const cv::Mat& image,
     const Eigen::Vector2f left(-reach, static_cast<float>(row) - reach);
     const Eigen::Vector2f start = A * left;
     const float depth = 1.0F + g.dot(left);
+    SampleLine line;
     for (int column = 0; column < kBorder; ++column) {
       const auto step = static_cast<float>(column);
       const float scale = 1.0F / (depth + step * g.x());
-      *out++ = bilinear(image,
-                        centre.x() + scale * (start.x() + step * A(0, 0)),
-                        centre.y() + scale * (start.y() + step * A(1, 0)));
+      line.x[column] = centre.x() + scale * (start.x() + step * A(0, 0));
+      line.y[column] = centre.y() + scale * (start.y() + step * A(1, 0));
     }
+    line.read(image, out);
+    out += kBorder;
   }
   return true;
 }

@@ -43,8 +43,8 @@ EstimatorWorker::~EstimatorWorker() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    if ((waiting_ || to_prepare_) && !busy_) clock_.leave();
-    waiting_.reset();
+    if ((!waiting_.empty() || to_prepare_) && !busy_) clock_.leave();
+    waiting_.clear();
     to_prepare_.reset();
   }
   changed_.notify_all();
@@ -63,30 +63,64 @@ void EstimatorWorker::prepare(VoFrame first) {
 void EstimatorWorker::submit(VoFrame frame) {
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_) {
-      drops_.push_back(drop_of(waiting_->frame));
-      SensorSamples samples = std::move(waiting_->frame.sensors);
+    if (waiting_.size() > options_.frames_ahead) {
+      drops_.push_back(drop_of(waiting_.back().frame));
+      SensorSamples samples = std::move(waiting_.back().frame.sensors);
       append(samples, std::move(frame.sensors));
       drop_older_than(samples, kOldestSampleNs);
       frame.sensors = std::move(samples);
-    } else if (!busy_) {
+      waiting_.pop_back();
+    } else if (!busy_ && waiting_.empty()) {
       clock_.enter();
     }
-    waiting_ = Waiting{std::move(frame), clock_.now_ns()};
+    waiting_.push_back({std::move(frame), clock_.now_ns()});
   }
   changed_.notify_all();
 }
 
 void EstimatorWorker::wait_until_idle() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !waiting_ && !to_prepare_ && !busy_; });
+  changed_.wait(lock, [this] { return waiting_.empty() && !to_prepare_ && !busy_; });
   rethrow_failure();
 }
 
-std::vector<EstimatorEvent> EstimatorWorker::take_events() {
+bool EstimatorWorker::has_answered(std::int64_t frame) const {
+  return !(busy_ && frame_in_progress_ <= frame) &&
+         (waiting_.empty() || waiting_.front().frame.index > frame);
+}
+
+void EstimatorWorker::wait_until_answered(std::int64_t frame) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return has_answered(frame); });
+  rethrow_failure();
+}
+
+bool EstimatorWorker::answered(std::int64_t frame) const {
+  const std::lock_guard lock(mutex_);
+  return has_answered(frame);
+}
+
+void EstimatorWorker::forget_after(std::int64_t frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return;
+    while (!waiting_.empty() && waiting_.back().frame.index > frame) waiting_.pop_back();
+    if (waiting_.empty() && !busy_) clock_.leave();
+  }
+  changed_.notify_all();
+}
+
+std::vector<EstimatorEvent> EstimatorWorker::take_events(std::int64_t frame) {
   const std::lock_guard lock(mutex_);
   rethrow_failure();
-  return std::exchange(events_, {});
+  const auto first_later =
+      std::find_if(events_.begin(), events_.end(), [&](const EstimatorEvent& event) {
+        return event.record.sample.frame > frame;
+      });
+  std::vector<EstimatorEvent> taken(std::make_move_iterator(events_.begin()),
+                                    std::make_move_iterator(first_later));
+  events_.erase(events_.begin(), first_later);
+  return taken;
 }
 
 void EstimatorWorker::rethrow_failure() {
@@ -113,7 +147,7 @@ void EstimatorWorker::work() {
   (void)bind_thread(options_.cpus);
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stopping_ || to_prepare_ || waiting_; });
+    changed_.wait(lock, [this] { return stopping_ || to_prepare_ || !waiting_.empty(); });
     if (stopping_) return;
     busy_ = true;
     try {
@@ -128,13 +162,14 @@ void EstimatorWorker::work() {
       thrown_ = std::current_exception();
     }
     busy_ = false;
-    if (!waiting_) clock_.leave();
+    if (waiting_.empty()) clock_.leave();
     changed_.notify_all();
   }
 }
 
 void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
   const VoFrame first = *std::exchange(to_prepare_, std::nullopt);
+  frame_in_progress_ = first.index;
   lock.unlock();
   driver_.prepare(first);
   ready_ns_ = clock_.now_ns();
@@ -142,7 +177,12 @@ void EstimatorWorker::make_ready(std::unique_lock<std::mutex>& lock) {
 }
 
 void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
-  const Waiting taken = *std::exchange(waiting_, std::nullopt);
+  Waiting taken = std::move(waiting_.front());
+  waiting_.pop_front();
+  frame_in_progress_ = taken.frame.index;
+  if (options_.frames_ahead > 0) {
+    taken.handed_over_ns = std::max(taken.handed_over_ns, idle_from_ns_);
+  }
   // Frames dropped before this one was taken are reported before its answer.
   std::move(drops_.begin(), drops_.end(), std::back_inserter(events_));
   drops_.clear();
@@ -150,6 +190,8 @@ void EstimatorWorker::answer_waiting(std::unique_lock<std::mutex>& lock) {
   EstimatorEvent event = answer(taken);
   if (options_.answered && !event.record.dropped) options_.answered(event.record);
   lock.lock();
+  if (options_.frames_ahead > 0) event.log = take_lines();
+  idle_from_ns_ = clock_.now_ns();
   events_.push_back(std::move(event));
 }
 
@@ -191,12 +233,18 @@ Result<VoEstimate> EstimatorWorker::track(const VoFrame& frame) {
   return estimate;
 }
 
-std::vector<std::string> EstimatorWorker::take_log() {
+std::vector<std::string> EstimatorWorker::take_lines() {
   std::vector<std::string> lines = port_->take_log();
-  const std::lock_guard lock(mutex_);
   std::move(notes_.begin(), notes_.end(), std::back_inserter(lines));
   notes_.clear();
   return lines;
+}
+
+std::vector<std::string> EstimatorWorker::take_log() {
+  const std::lock_guard lock(mutex_);
+  // Lines of a frame in progress, or taken before its event, would come in an earlier one's place.
+  const bool belong_to_events = options_.frames_ahead > 0 && (busy_ || !waiting_.empty());
+  return belong_to_events ? std::vector<std::string>() : take_lines();
 }
 
 void EstimatorWorker::hold_back(const Waiting& waiting) {

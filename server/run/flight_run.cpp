@@ -1,6 +1,8 @@
 #include "server/run/flight_run.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "core/cancel.hpp"
 #include "core/measure/crc32.hpp"
 #include "server/record/rows/rows.hpp"
+#include "server/run/frames_ahead.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/thread_priority.hpp"
 
@@ -155,12 +158,57 @@ Status FlightRun::record_last_period() {
   return last ? recorder_.add_sensor_samples(*last) : last.error();
 }
 
+std::int64_t FlightRun::last_recorded_frame() const {
+  const std::vector<FrameRow>& frames = recorder_.records().main_camera().frames;
+  return frames.empty() ? kNoFrame : frames.back().frame;
+}
+
 Status FlightRun::fly_lockstep() {
+  // The lines of their start, before frames are on their way to them.
+  if (Status status = record_events(kNoFrame); !status) return status;
+  // An answer that is sent to the vehicle may change its flight.
+  const std::size_t most = feedback_ ? 0 : lockstep_frames_ahead(scenario_);
+  std::deque<Pending> pending;
   for (std::int64_t k = 0; k < maker_->frames_total(); ++k) {
     if (cancelled()) return stopped();
-    const Result<Flight> flight = fly_frame(k, true);
-    if (!flight) return flight.error();
-    if (*flight == Flight::kEnded) break;
+    std::exception_ptr thrown;
+    Result<std::optional<Pending>> made = std::optional<Pending>();
+    try {
+      made = make_frame(k);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    if (!made || !*made) {
+      if (cancelled()) return made ? stopped() : made.error();
+      // The frames before it have been flown.
+      if (Status recorded = record_pending(pending, 0); !recorded) return recorded;
+      if (thrown) std::rethrow_exception(thrown);
+      const Status logged = log_end_of_flight();
+      return made ? logged : made.error();
+    }
+    send(pending.emplace_back(std::move(**made)));
+    if (Status recorded = record_pending(pending, most); !recorded) return recorded;
+  }
+  return record_pending(pending, 0);
+}
+
+Status FlightRun::record_pending(std::deque<Pending>& pending, std::size_t most) {
+  while (!pending.empty()) {
+    const std::int64_t previous = pending.front().made.frame - 1;
+    const bool answered = std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
+      return worker->answered(previous);
+    });
+    if (!answered && pending.size() <= most) return {};
+    stages_.measure("wait_for_estimators", [&] {
+      for (auto& worker : workers_) worker->wait_until_answered(previous);
+      return 0;
+    });
+    if (cancelled()) return stopped();
+    if (Status status = record_events(previous); !status) return status;
+    const Status recorded = record(pending.front());
+    if (options_.progress) options_.progress(recorder_.info());
+    if (!recorded) return recorded;
+    pending.pop_front();
   }
   return {};
 }
@@ -213,50 +261,110 @@ Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
       continue;
     }
     if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
-    const Result<Flight> flight = fly_frame(k, false);
-    if (!flight) return flight.error();
-    if (*flight == Flight::kEnded) break;
+    Result<std::optional<Pending>> made = make_frame(k);
+    if (!made || !*made) {
+      const Status logged = cancelled() ? Status() : log_end_of_flight();
+      return made ? logged : made.error();
+    }
+    if (Status status = record_events(EstimatorWorker::kAllFrames); !status) return status;
+    send(**made);
+    const Status recorded = record(**made);
+    if (options_.progress) options_.progress(recorder_.info());
+    if (!recorded) return recorded;
     const std::int64_t done_ns = clock_.now_ns();
     pictures.frame_made(done_ns, next_ns - t_ns, start_ns + next_ns - done_ns);
   }
   return {};
 }
 
-Result<FlightRun::Flight> FlightRun::fly_frame(std::int64_t k, bool wait_for_estimators) {
+Result<std::optional<FlightRun::Pending>> FlightRun::make_frame(std::int64_t k) {
   auto made = maker_->make(k);
-  if (!made || !*made) {
-    // What ended the flight is an event behind the last frame.
-    Status logged = cancelled() ? Status() : log_flight(kFlightsEndNs, end_ns());
-    if (!made) return made.error();
-    return logged ? Result<Flight>(Flight::kEnded) : Result<Flight>(logged.error());
-  }
+  if (!made) return made.error();
+  if (!*made) return std::optional<Pending>();
   if (const std::optional<std::int64_t> heard_ns = maker_->heard_ns()) {
     message_to_frame_.ms.push_back(static_cast<double>(machine_clock().now_ns() - *heard_ns) *
                                    1e-6);
   }
-
-  // The estimators worked on the previous frame while this one was drawn.
-  if (wait_for_estimators) {
-    stages_.measure("wait_for_estimators", [&] {
-      for (auto& worker : workers_) worker->wait_until_idle();
-      return 0;
-    });
-  }
-  if (Status status = record_events(); !status) return status.error();
-
-  if (Status status = log_faults((*made)->t_ns); !status) return status.error();
-  if (Status status = log_flight((*made)->t_ns, (*made)->t_ns); !status) return status.error();
-  const Status delivered = deliver(**made);
-  if (options_.progress) options_.progress(recorder_.info());
-  if (!delivered) return delivered.error();
-  return Flight::kGoesOn;
+  Pending frame;
+  frame.made = std::move(**made);
+  frame.events = maker_->take_flight_events(frame.made.t_ns);
+  frame.vehicle = maker_->take_vehicle_status(frame.made.t_ns);
+  return std::optional(std::move(frame));
 }
 
-Status FlightRun::judge_recorded_image(const MadeFrame& made) {
+Status FlightRun::log_end_of_flight() { return log_flight(kFlightsEndNs, end_ns()); }
+
+void FlightRun::send(Pending& frame) {
+  MadeFrame& made = frame.made;
+  unsent_samples_.resize(workers_.size());
+  for (SensorSamples& unsent : unsent_samples_) {
+    append(unsent, SensorSamples(made.sensors));
+    drop_older_than(unsent, kOldestSampleNs);
+  }
+  for (CameraShot& shot : made.shots) {
+    const auto& image =
+        frame.images.emplace_back(std::make_shared<const Image>(std::move(shot.image)));
+    std::optional<std::uint32_t>& crc32 = frame.image_crc32.emplace_back();
+    if (const auto& feed = truth_feeds_[shot.camera]) {
+      feed->add(shot.stamp_ns, {shot.drawn.T_world_camera, shot.drawn.axis_depth_m});
+    }
+    if (feedback_ && scenario_.estimators[*scenario_.feedback_estimator].camera == shot.camera) {
+      feedback_->add_frame(row_from(made, shot, scenario_.cameras[shot.camera]));
+    }
+    if (!shot.delivered) continue;
+    const auto grey = image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
+    // Computed once per frame, so that it applies to the image of every estimator.
+    crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      if (scenario_.estimators[i].camera != shot.camera) continue;
+      VoFrame sent = vo_frame_from(made, shot, shot.name, given_model(shot.camera), grey);
+      sent.image_crc32 = *crc32;
+      sent.sensors = std::exchange(unsent_samples_[i], {});
+      workers_[i]->submit(std::move(sent));
+    }
+  }
+}
+
+Status FlightRun::record(Pending& frame) {
+  const MadeFrame& made = frame.made;
+  if (Status status = log_faults(made.t_ns); !status) return status;
+  Status logged = log_flight(frame.events, std::move(frame.vehicle), made.t_ns);
+  if (!logged) return logged;
+  if (!made.sensors.empty()) {
+    const Status sensed =
+        stages_.measure("sensors", [&] { return recorder_.add_sensor_samples(made.sensors); });
+    if (!sensed) return sensed;
+  }
+  if (Status judged = judge_recorded_image(frame); !judged) return judged;
+  for (std::size_t shot = 0; shot < made.shots.size(); ++shot) {
+    if (Status recorded = record_shot(frame, shot); !recorded) return recorded;
+  }
+  return {};
+}
+
+Status FlightRun::record_shot(const Pending& frame, std::size_t index) {
+  const CameraShot& shot = frame.made.shots[index];
+  FrameRow row = row_from(frame.made, shot, scenario_.cameras[shot.camera]);
+  row.image_crc32 = frame.image_crc32[index];
+  const std::optional<std::string> overexposed =
+      saturation_.add(shot.camera, row.frame, row.saturated_fraction, row.exposure_ns);
+  if (overexposed) {
+    if (Status status = recorder_.log(row.t_ns, "warning", *overexposed); !status) return status;
+  }
+  late_tiles_ += row.late_tiles;
+  frames_with_late_tiles_ += row.late_tiles > 0 ? 1 : 0;
+  const auto image = shot.delivered ? frame.images[index] : nullptr;
+  return stages_.measure(
+      "record", [&] { return recorder_.add_frame(row, image, shot.image16, shot.camera); });
+}
+
+Status FlightRun::judge_recorded_image(const Pending& frame) {
   constexpr int kMostProblemsLogged = 100;
   const CameraSpec* const camera = scenario_.recorded_camera();
   if (camera == nullptr) return {};
-  const CameraShot& real = made.shots[static_cast<std::size_t>(camera - scenario_.cameras.data())];
+  const MadeFrame& made = frame.made;
+  const auto index = static_cast<std::size_t>(camera - scenario_.cameras.data());
+  const CameraShot& real = made.shots[index];
   if (!real.problem.empty() && problems_logged_++ < kMostProblemsLogged) {
     const std::string end = problems_logged_ == kMostProblemsLogged ? "; no more are listed" : "";
     Status logged = recorder_.log(made.t_ns, "warning", "image lost: " + real.problem + end);
@@ -265,65 +373,14 @@ Status FlightRun::judge_recorded_image(const MadeFrame& made) {
   if (!camera->images->compare_with) return {};
   AgreementRow row{made.frame, made.t_ns, std::nullopt, real.problem};
   if (real.delivered) {
-    const Image rendered = grey_of(made.shots[*camera->images->compare_with].image);
-    auto agreement = stages_.measure(
-        "compare_images", [&] { return evaluation::compare_images(real.image, rendered); });
+    const Image rendered = grey_of(*frame.images[*camera->images->compare_with]);
+    auto agreement = stages_.measure("compare_images", [&] {
+      return evaluation::compare_images(*frame.images[index], rendered);
+    });
     if (!agreement) return agreement.error();
     row.agreement = *agreement;
   }
   return recorder_.add_agreement(row);
-}
-
-Status FlightRun::take_sensor_samples(MadeFrame& made) {
-  if (Status recorded = recorder_.add_sensor_samples(made.sensors); !recorded) return recorded;
-  unsent_samples_.resize(workers_.size());
-  for (SensorSamples& unsent : unsent_samples_) {
-    append(unsent, SensorSamples(made.sensors));
-    drop_older_than(unsent, kOldestSampleNs);
-  }
-  return {};
-}
-
-Status FlightRun::deliver(MadeFrame& made) {
-  if (!made.sensors.empty()) {
-    const Status sensed = stages_.measure("sensors", [&] { return take_sensor_samples(made); });
-    if (!sensed) return sensed;
-  }
-  if (Status judged = judge_recorded_image(made); !judged) return judged;
-  for (CameraShot& shot : made.shots) {
-    const CameraSpec& camera = scenario_.cameras[shot.camera];
-    FrameRow row = row_from(made, shot, camera);
-    const std::optional<std::string> overexposed =
-        saturation_.add(shot.camera, row.frame, row.saturated_fraction, row.exposure_ns);
-    if (overexposed) {
-      if (Status status = recorder_.log(row.t_ns, "warning", *overexposed); !status) return status;
-    }
-    late_tiles_ += row.late_tiles;
-    frames_with_late_tiles_ += row.late_tiles > 0 ? 1 : 0;
-    std::shared_ptr<const Image> image;
-    if (shot.delivered) image = std::make_shared<const Image>(std::move(shot.image));
-    const auto grey =
-        image && image->channels != 1 ? std::make_shared<const Image>(grey_of(*image)) : image;
-    // Computed once per frame, so that it applies to the image of every estimator.
-    if (grey) row.image_crc32 = stages_.measure("hash", [&] { return crc32_of(*grey); });
-    if (feedback_ && scenario_.estimators[*scenario_.feedback_estimator].camera == shot.camera) {
-      feedback_->add_frame(row);
-    }
-    if (const auto& feed = truth_feeds_[shot.camera]) {
-      feed->add(shot.stamp_ns, {row.T_world_camera, row.axis_depth_m});
-    }
-    for (std::size_t i = 0; i < workers_.size() && grey; ++i) {
-      if (scenario_.estimators[i].camera != shot.camera) continue;
-      VoFrame frame = vo_frame_from(made, shot, camera.name, given_model(shot.camera), grey);
-      frame.image_crc32 = row.image_crc32;
-      if (i < unsent_samples_.size()) frame.sensors = std::exchange(unsent_samples_[i], {});
-      workers_[i]->submit(std::move(frame));
-    }
-    Status recorded = stages_.measure(
-        "record", [&] { return recorder_.add_frame(row, image, shot.image16, shot.camera); });
-    if (!recorded) return recorded;
-  }
-  return {};
 }
 
 Status FlightRun::log_faults(std::int64_t t_ns) {
@@ -334,25 +391,34 @@ Status FlightRun::log_faults(std::int64_t t_ns) {
   return {};
 }
 
-Status FlightRun::log_flight(std::int64_t until_ns, std::int64_t latest_ns) {
-  for (const FlightEvent& event : maker_->take_flight_events(until_ns)) {
+Status FlightRun::log_flight(const std::vector<FlightEvent>& events,
+                             std::optional<VehicleStatus> vehicle,
+                             std::int64_t latest_ns) {
+  for (const FlightEvent& event : events) {
     const char* kind = to_string(event.kind);
     Status status = recorder_.log(std::min(event.t_ns, latest_ns), "info", event.text, kind);
     if (!status) return status;
   }
-  std::optional<VehicleStatus> vehicle = maker_->take_vehicle_status(until_ns);
   if (!vehicle) return {};
   vehicle->t_ns = std::min(vehicle->t_ns, latest_ns);
   return recorder_.add_vehicle_status(*vehicle);
 }
 
-Status FlightRun::record_events() {
+Status FlightRun::log_flight(std::int64_t until_ns, std::int64_t latest_ns) {
+  const std::vector<FlightEvent> events = maker_->take_flight_events(until_ns);
+  return log_flight(events, maker_->take_vehicle_status(until_ns), latest_ns);
+}
+
+Status FlightRun::record_events(std::int64_t frame) {
   for (std::size_t i = 0; i < workers_.size(); ++i) {
-    for (EstimatorEvent& event : workers_[i]->take_events()) {
+    std::vector<std::string> lines;
+    for (EstimatorEvent& event : workers_[i]->take_events(frame)) {
+      std::move(event.log.begin(), event.log.end(), std::back_inserter(lines));
       if (Status status = recorder_.add_event(i, std::move(event)); !status) return status;
     }
-    Status logged = recorder_.add_estimator_log(i, end_ns(), workers_[i]->take_log());
-    if (!logged) return logged;
+    const std::vector<std::string> others = workers_[i]->take_log();
+    lines.insert(lines.end(), others.begin(), others.end());
+    if (Status logged = recorder_.add_estimator_log(i, end_ns(), lines); !logged) return logged;
   }
   return {};
 }

@@ -1,7 +1,9 @@
 // The tick loop of one run: time, truth, camera, estimators, recorder.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -57,28 +59,52 @@ class FlightRun {
   /// sensors, overexposed images.
   Status describe_end();
 
+  /// A frame on its way from the cameras to the record.
+  struct Pending {
+    MadeFrame made;
+    /// By shot: its image, moved out of the shot, as recorded; never null.
+    std::vector<std::shared_ptr<const Image>> images;
+    std::vector<std::optional<std::uint32_t>> image_crc32;  ///< by shot, of the grey image
+    std::vector<FlightEvent> events;                        ///< of the flight, up to the frame
+    std::optional<VehicleStatus> vehicle;
+  };
+
+  /// Frames are made ahead of the estimators, and recorded in the order in which they would be
+  /// without: answers to a frame, then the next frame.
   Status fly_lockstep();
+  /// Index; kNoFrame before the first.
+  [[nodiscard]] std::int64_t last_recorded_frame() const;
+  /// Records the pending frames whose predecessors have been answered, and waits for answers until
+  /// at most `most` frames are pending.
+  Status record_pending(std::deque<Pending>& pending, std::size_t most);
   Status fly_real_time();
   /// @param start_ns  start of the flight on the run's clock
   Status keep_pace(std::int64_t start_ns, PictureRate& pictures);
-  /// Whether the flight continues after a frame.
-  enum class Flight { kGoesOn, kEnded };
-  /// Makes and records frame k and sends it to the estimators. After the end of a flight of unknown
-  /// length it returns kEnded and makes no frame.
-  Result<Flight> fly_frame(std::int64_t k, bool wait_for_estimators);
-  /// Gives each estimator its camera's image, and records all cameras.
-  Status deliver(MadeFrame& made);
-  Status take_sensor_samples(MadeFrame& made);
+  /// Makes frame k; empty after the end of a flight of unknown length.
+  Result<std::optional<Pending>> make_frame(std::int64_t k);
+  /// After the last frame or a frame that could not be made: what ended the flight is an event
+  /// behind the last frame.
+  Status log_end_of_flight();
+  /// Gives each estimator its camera's image and the samples of the sensors.
+  void send(Pending& frame);
+  /// Records what happened up to a frame, except for the estimators' events, and its cameras.
+  Status record(Pending& frame);
+  Status record_shot(const Pending& frame, std::size_t shot);
   Status record_last_period();
   /// Compares the recorded image of a frame with the rendered one, and reports a lost one.
-  Status judge_recorded_image(const MadeFrame& made);
-  Status record_events();
-  /// Records the events of the flight and the state of a live vehicle.
-  /// Records the flight's events and the vehicle's reports up to a time, stamped no later than
-  /// `latest_ns`.
+  Status judge_recorded_image(const Pending& frame);
+  /// Records the estimators' answers up to a frame, and their log lines.
+  Status record_events(std::int64_t frame);
+  /// Records the flight's events and the vehicle's reports, stamped no later than `latest_ns`.
+  Status log_flight(const std::vector<FlightEvent>& events,
+                    std::optional<VehicleStatus> vehicle,
+                    std::int64_t latest_ns);
+  /// As above, of those up to a time.
   Status log_flight(std::int64_t until_ns, std::int64_t latest_ns);
   Status log_faults(std::int64_t t_ns);
   [[nodiscard]] bool cancelled() const;
+
+  static constexpr std::int64_t kNoFrame = -1;
 
   const Scenario& scenario_;
   const RunOptions& options_;

@@ -4,6 +4,7 @@
 
 #include "server/record/run_folder.hpp"
 #include "server/run/flight_run.hpp"
+#include "server/run/frames_ahead.hpp"
 #include "server/timing/cpu_affinity.hpp"
 
 namespace overfly::server {
@@ -104,6 +105,10 @@ Status FlightRun::open_estimators() {
       EstimatorWorkerOptions worker;
       worker.debug_hz = scenario_.record_debug_hz;
       worker.throttle_hz = spec.throttle_hz;
+      // In addition to the pending frames, the one whose answer the next record waits for.
+      if (scenario_.pacing == Pacing::kLockstep) {
+        worker.frames_ahead = lockstep_frames_ahead(scenario_) + 1;
+      }
       worker.in_process = !is_outside_estimator(spec.type);
       if (worker.in_process) worker.cpus = spec.cpus;
       if (scenario_.feedback_estimator == i) worker.answered = open_feedback(spec);
@@ -134,11 +139,14 @@ void FlightRun::prepare_estimators() {
 }
 
 Status FlightRun::close_estimators() {
+  // A flight that was stopped ends with the last frame of its record.
+  const std::int64_t last = last_recorded_frame();
   stages_.measure("wait_for_estimators", [&] {
+    for (auto& worker : workers_) worker->forget_after(last);
     for (auto& worker : workers_) worker->wait_until_idle();
     return 0;
   });
-  const Status recorded = record_events();
+  const Status recorded = record_events(last);
   if (feedback_) {
     Status logged = recorder_.log(end_ns(), "info", feedback_->finish());
     if (!logged) return logged;

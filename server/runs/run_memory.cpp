@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include "server/run/frames_ahead.hpp"
+
 namespace overfly::server {
 namespace {
 
@@ -157,6 +159,7 @@ RunMemory memory_of(const Scenario& scenario) {
   for (const EstimatorSpec& estimator : scenario.estimators) {
     memory.images_bytes += estimator_bytes(scenario, estimator);
   }
+  memory.images_bytes += lockstep_frames_ahead(scenario) * frame_bytes(scenario);
   memory.caches_bytes = raycast ? kRaycastCachesBytes : kEglCachesBytes;
   return memory;
 }

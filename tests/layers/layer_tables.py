@@ -276,7 +276,7 @@ THIRD_PARTY = [
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/files"], False),
-    (r"libdeflate\.h$", ["server/files", "flight/logs/mcap", "flight/logs/probes", "server/export/mcap"], False),
+    (r"libdeflate\.h$", ["core/measure", "server/files", "flight/logs/mcap", "flight/logs/probes", "server/export/mcap"], False),
     (r"(lz4frame|zstd|bzlib)\.h$", ["flight/logs/ros"], False),
     (r"vpx/", ["server/export/video", "server/views/video"], False),
     (r"lib(av|sw)\w+/", ["server/imagery/video"], False),

@@ -94,7 +94,10 @@ double enter_cell(
 /// Marches through one tile from parameter `from` to `to`; depth 0 if nothing is hit.
 GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, double to) {
   const HeightTile& tile = *node.tile;
-  int k = kLog2TileCells;
+  // The ray does not pass above the whole tile.
+  int k = kLog2TileCells - 1;
+  int last_column = 0, last_row = 0;
+  bool passed = false;
   double t = from;
   const double ahead_columns = std::copysign(kAhead, ray.d_column);
   const double ahead_rows = std::copysign(kAhead, ray.d_row);
@@ -103,6 +106,12 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
     const double at_row = ray.row + t * ray.d_row + ahead_rows;
     const int column = std::clamp(static_cast<int>(at_column), 0, kTileCells - 1);
     const int row = std::clamp(static_cast<int>(at_row), 0, kTileCells - 1);
+    // A larger square is tried only where the ray enters it: further inside a falling ray is no
+    // higher above it.
+    if (passed && ((column ^ last_column) | (row ^ last_row)) >> (k + 1) != 0) ++k;
+    passed = false;
+    last_column = column;
+    last_row = row;
     const int side = 1 << k;
     const int low_column = column & ~(side - 1);
     const int low_row = row & ~(side - 1);
@@ -113,13 +122,14 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
     const double lowest = ray.height + ray.d_height * (ray.d_height < 0.0 ? end : t);
     if (lowest > tile.highest(k, column, row)) {
       t = end;
-      k = std::min(k + 1, kLog2TileCells);
+      passed = true;
     } else if (k > 0) {
       --k;
     } else {
       const double depth = enter_cell(tile, ray, column, row, t, end);
       if (depth < kNever) return hit_at(node, ray, column, row, depth);
       t = end;
+      passed = true;
     }
   }
   return {};
@@ -175,7 +185,7 @@ GroundHit GroundCaster::cast(const Eigen::Vector3d& origin,
     const GroundHit hit = descend(origin, direction, guess, near);
     if (!hit.sky()) return hit;
   }
-  return march(origin, direction);
+  return march(origin, direction, near);
 }
 
 GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
@@ -223,7 +233,11 @@ GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
 }
 
 GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
-                              const Eigen::Vector3d& direction) const {
+                              const Eigen::Vector3d& direction,
+                              const GroundNode* near) const {
+  // A square near the ray: the search for the next one begins there, not at the root. A falling ray
+  // that does not pass above a square does not do so further inside either.
+  auto from = near != nullptr ? static_cast<std::int32_t>(near - tree_.nodes.data()) : -1;
   double t = 0.0;
   if (origin.z() > tree_.highest_m) {
     if (!(direction.z() < 0.0)) return {};
@@ -237,18 +251,28 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
     const double east_m = origin.x() + t * direction.x() + ahead_east_m;
     const double north_m = origin.y() + t * direction.y() + ahead_north_m;
     if (direction.z() > 0.0 && origin.z() + t * direction.z() > tree_.highest_m) return {};
-    const double col = std::floor((east_m - tree_.east_m) / tree_.side_m);
-    const double row = std::floor((north_m - tree_.north_m) / tree_.side_m);
-    if (!(col >= 0.0 && col < 3.0 && row >= 0.0 && row < 3.0)) return {};
-    std::int32_t at = tree_.roots[static_cast<int>(row) * 3 + static_cast<int>(col)];
-    double low_east = tree_.east_m + col * tree_.side_m;
-    double low_north = tree_.north_m + row * tree_.side_m;
-    double side = tree_.side_m;
+    while (from >= 0 && !tree_.nodes[from].holds(east_m, north_m)) from = tree_.nodes[from].parent;
+    std::int32_t at = from;
+    double low_east = 0.0, low_north = 0.0, side = tree_.side_m;
+    if (at >= 0) {
+      const GroundNode& around = tree_.nodes[at];
+      low_east = around.east_m;
+      low_north = around.north_m;
+      side = around.side_m;
+    } else {
+      const double col = std::floor((east_m - tree_.east_m) / tree_.side_m);
+      const double row = std::floor((north_m - tree_.north_m) / tree_.side_m);
+      if (!(col >= 0.0 && col < 3.0 && row >= 0.0 && row < 3.0)) return {};
+      at = tree_.roots[static_cast<int>(row) * 3 + static_cast<int>(col)];
+      low_east = tree_.east_m + col * tree_.side_m;
+      low_north = tree_.north_m + row * tree_.side_m;
+    }
     while (true) {
       double end = std::min(leave(origin.x(), per_east, low_east, side),
                             leave(origin.y(), per_north, low_north, side));
       end = std::max(std::min(end, kFarthest), t);
       const GroundNode* node = at >= 0 ? &tree_.nodes[at] : nullptr;
+      if (node != nullptr) from = at;
       const double lowest = origin.z() + direction.z() * (direction.z() < 0.0 ? end : t);
       if (node == nullptr || lowest > node->highest_m) {
         t = end;

@@ -35,7 +35,7 @@ class GroundCaster {
   /// The first intersection of a ray with the ground.
   /// @param direction  any length
   /// @param guess  a depth near the answer, or 0
-  /// @param near  a leaf near the answer, or null; shortens the search
+  /// @param near  a leaf of the tree near the answer, or null; shortens the search
   [[nodiscard]] GroundHit cast(const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction,
                                double guess,
@@ -57,7 +57,8 @@ class GroundCaster {
                                   double guess,
                                   const GroundNode* near) const;
   [[nodiscard]] GroundHit march(const Eigen::Vector3d& origin,
-                                const Eigen::Vector3d& direction) const;
+                                const Eigen::Vector3d& direction,
+                                const GroundNode* near) const;
 
   const GroundTree& tree_;
 };

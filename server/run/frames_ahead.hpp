@@ -1,0 +1,25 @@
+// How far a lockstep flight makes its frames ahead of the estimators.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "server/scenario/scenario.hpp"
+
+namespace overfly::server {
+
+/// An estimator that takes ten times as long for a keyframe as for other frames is busy all the
+/// time with this many frames in front of it.
+inline constexpr std::size_t kMostFramesAhead = 8;
+/// Limit of the memory of these frames.
+inline constexpr std::uint64_t kFramesAheadBytes = std::uint64_t{32} << 20U;
+
+/// Memory of one frame between the cameras and the record: the images of all cameras, and grey
+/// copies of colour ones [bytes].
+[[nodiscard]] std::uint64_t frame_bytes(const Scenario& scenario);
+
+/// Number of frames that wait for the estimators in addition to the one that is made while an
+/// estimator works; 0 in real time and without estimators.
+[[nodiscard]] std::size_t lockstep_frames_ahead(const Scenario& scenario);
+
+}  // namespace overfly::server
