@@ -19,6 +19,16 @@ bool holds_first_pose(AlignmentMode mode) {
          mode == AlignmentMode::kOriginSim3;
 }
 
+std::optional<double> position_deviation(const Vector6d& error, const Matrix6d& P) {
+  return squared_deviation(Eigen::Vector3d(error.head<3>()),
+                           Eigen::Matrix3d(P.topLeftCorner<3, 3>()));
+}
+
+std::optional<double> rotation_deviation(const Vector6d& error, const Matrix6d& P) {
+  return squared_deviation(Eigen::Vector3d(error.tail<3>()),
+                           Eigen::Matrix3d(P.bottomRightCorner<3, 3>()));
+}
+
 std::optional<Nees> nees_or_none(const std::vector<double>& squared, int degrees) {
   return squared.empty() ? std::nullopt : std::optional<Nees>(nees_of(squared, degrees));
 }
@@ -40,13 +50,13 @@ std::optional<Consistency> consistency_of(const std::vector<MatchedPose>& matche
     Vector6d error;
     error << match.T_world_camera.translation - estimate.translation,
         rotation_error_rad(match.T_world_camera.rotation, estimate.rotation);
-    if (const auto squared = squared_deviation(error.head<3>(), P.topLeftCorner<3, 3>())) {
+    if (const auto squared = position_deviation(error, P)) {
       positions.push_back(*squared);
     } else {
       ++result.singular;
     }
     if (!match.covariance->has_rotation || score.degenerate) continue;
-    if (const auto squared = squared_deviation(error.tail<3>(), P.bottomRightCorner<3, 3>())) {
+    if (const auto squared = rotation_deviation(error, P)) {
       rotations.push_back(*squared);
     }
     if (const auto squared = squared_deviation(error, P)) poses.push_back(*squared);

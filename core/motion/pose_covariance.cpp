@@ -30,10 +30,27 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return matrix;
 }
 
-/// The inverse standard deviations; 0 for those that are 0.
-Eigen::VectorXd inverse_deviations(const Eigen::MatrixXd& covariance) {
-  return covariance.diagonal().unaryExpr(
-      [](double variance) { return variance > 0.0 ? 1.0 / std::sqrt(variance) : 0.0; });
+double inverse_deviation(double variance) {
+  return variance > 0.0 ? 1.0 / std::sqrt(variance) : 0.0;
+}
+
+/// The error in standard deviations: with the correlations C = D^-1/2 P D^-1/2 = L L^T, whose
+/// factor does not suffer from the different units, it is L^-1 D^-1/2 e.
+template <int N>
+std::optional<double> squared_norm(const Eigen::Matrix<double, N, 1>& error,
+                                   const Eigen::Matrix<double, N, N>& covariance) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const Vector scale = covariance.diagonal().unaryExpr(&inverse_deviation);
+  const Matrix correlations = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const Eigen::LLT<Matrix> factor(correlations);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const Matrix L = factor.matrixL();
+  if (L.diagonal().array().square().minCoeff() < kSmallestPivot) return std::nullopt;
+  const Vector deviations =
+      L.template triangularView<Eigen::Lower>().solve(Vector(scale.cwiseProduct(error)));
+  const double squared = deviations.squaredNorm();
+  return std::isfinite(squared) ? std::optional<double>(squared) : std::nullopt;
 }
 
 Status check_values(std::span<const double> values, int size) {
@@ -66,7 +83,7 @@ Status check_definiteness(const Eigen::MatrixXd& P) {
     return bad("variance " + place_of(i, i) + " = " + std::to_string(P(i, i)) +
                ": must not be negative");
   }
-  const Eigen::VectorXd scale = inverse_deviations(P);
+  const Eigen::VectorXd scale = P.diagonal().unaryExpr(&inverse_deviation);
   Eigen::MatrixXd correlations = scale.asDiagonal() * P * scale.asDiagonal();
   for (int row = 0; row < P.rows(); ++row) {
     // Without a variance there is no covariance: the check of the symmetry has ensured that the two
@@ -150,17 +167,13 @@ Matrix6d inverted_covariance(const Pose& T_a_b, const Matrix6d& covariance) {
   return J * covariance * J.transpose();
 }
 
-std::optional<double> squared_deviation(const Eigen::VectorXd& error,
-                                        const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd scale = inverse_deviations(covariance);
-  const Eigen::MatrixXd correlations = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factor(correlations);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
-  if (pivots.array().square().minCoeff() < kSmallestPivot) return std::nullopt;
-  const Eigen::VectorXd deviations = factor.matrixL().solve(scale.cwiseProduct(error));
-  const double squared = deviations.squaredNorm();
-  return std::isfinite(squared) ? std::optional<double>(squared) : std::nullopt;
+std::optional<double> squared_deviation(const Eigen::Vector3d& error,
+                                        const Eigen::Matrix3d& covariance) {
+  return squared_norm<3>(error, covariance);
+}
+
+std::optional<double> squared_deviation(const Vector6d& error, const Matrix6d& covariance) {
+  return squared_norm<6>(error, covariance);
 }
 
 }  // namespace overfly

@@ -55,8 +55,9 @@ using PoseCovariancePtr = std::shared_ptr<const PoseCovariance>;
 
 /// The error e in standard deviations, squared: e^T P^-1 e. Empty if P is singular: a direction has
 /// (relative to the standard deviations) a variance below 1e-10.
-/// @pre error.size() is 3 or 6, and P has as many rows and columns
-[[nodiscard]] std::optional<double> squared_deviation(const Eigen::VectorXd& error,
-                                                      const Eigen::MatrixXd& covariance);
+[[nodiscard]] std::optional<double> squared_deviation(const Eigen::Vector3d& error,
+                                                      const Eigen::Matrix3d& covariance);
+[[nodiscard]] std::optional<double> squared_deviation(const Vector6d& error,
+                                                      const Matrix6d& covariance);
 
 }  // namespace overfly

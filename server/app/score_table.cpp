@@ -74,8 +74,8 @@ std::string left_out_text(const evaluation::Score& score) {
                    score.covariances.left_out + score.covariances.stated);
 }
 
-/// One line for each interval that the path has, and one for the others.
-std::string fix_drift_text(const evaluation::AlignmentScore& alignment) {
+/// One line for each interval that the path has, and on request one for the others.
+std::string fix_drift_text(const evaluation::AlignmentScore& alignment, bool with_missing) {
   std::string text;
   std::string missing;
   std::string reason;
@@ -93,7 +93,7 @@ std::string fix_drift_text(const evaluation::AlignmentScore& alignment) {
         drift.worst_m,
         drift.segments);
   }
-  if (missing.empty()) return text;
+  if (missing.empty() || !with_missing) return text;
   return text + "    with a position fix every " + missing + " km: not known, " + reason + "\n";
 }
 
@@ -148,7 +148,7 @@ std::string errors_text(const evaluation::Score& score, evaluation::AlignmentMod
   const evaluation::AlignmentScore& alignment = found->second;
   return formatted("  %12.3f %12.3f ", alignment.position_m.rmse, alignment.position_rmse_hold_m) +
          figure(rmse_of(alignment.rotation_deg), 12, 4) + "\n" + degenerate_text(alignment) +
-         consistency_text(alignment) + fix_drift_text(alignment);
+         consistency_text(alignment) + fix_drift_text(alignment, false);
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ std::string alignment_table(const evaluation::Score& score) {
              figure(rmse_of(alignment->rotation_deg), 12, 4) + " " +
              figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + "\n" +
              degenerate_text(*alignment) + consistency_text(*alignment) +
-             fix_drift_text(*alignment);
+             fix_drift_text(*alignment, true);
     for (const std::string& note : alignment->notes) table += "    " + note + "\n";
   }
   table += left_out_text(score);
