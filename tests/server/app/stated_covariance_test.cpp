@@ -67,12 +67,12 @@ class StatedCovariance : public CommandLine {
   /// Flies the three estimators, after a flight that gives them the truth.
   void fly() {
     write_text(path("noisy.py"), kNoisyOdometry);
-    ASSERT_EQ(
-        fly_with(Json::array({{{"name", "perfect"}, {"type", "perfect"}}}), "first").exit_code, 0);
+    ASSERT_EQ(fly_with(Json::array({{{"name", "perfect"}, {"type", "perfect"}}}), first_).exit_code,
+              0);
     flight_ = fly_with(Json::array({noisy("honest", "1", "tidy"),
                                     noisy("boaster", "4", "tidy"),
                                     noisy("untidy", "1", "untidy")}),
-                       "second");
+                       second_);
     ASSERT_EQ(flight_.exit_code, 0) << flight_.err;
   }
 
@@ -84,7 +84,7 @@ class StatedCovariance : public CommandLine {
               "-B",
               path("noisy.py"),
               source_file("vo_bridges/client").string(),
-              path("first/frames.jsonl"),
+              path(first_ + "/frames.jsonl"),
               divisor,
               how}}};
   }
@@ -102,10 +102,18 @@ class StatedCovariance : public CommandLine {
   }
 
   [[nodiscard]] Json metrics_of(const std::string& estimator) const {
-    return Json::parse(read_text(path("second/metrics.json"))).at("estimators").at(estimator);
+    return Json::parse(read_text(path(second_ + "/metrics.json"))).at("estimators").at(estimator);
   }
 
+  const std::string first_ = own_name("first");
+  const std::string second_ = own_name("second");
   Outcome flight_;
+
+ private:
+  /// The tests share a folder.
+  static std::string own_name(const std::string& name) {
+    return name + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
 };
 
 TEST_F(StatedCovariance, HonestOneIsConsistentAndTheBoasterIsMarked) {
@@ -127,7 +135,7 @@ TEST_F(StatedCovariance, HonestOneIsConsistentAndTheBoasterIsMarked) {
   EXPECT_EQ(init_scale.at("consistency").at("pose").at("samples"), 60);
   EXPECT_THAT(flight_.out, HasSubstr("overconfident, errors are "));
 
-  const Outcome scored = overfly_program({"evaluate", "--run", path("second")});
+  const Outcome scored = overfly_program({"evaluate", "--run", path(second_)});
   EXPECT_EQ(scored.exit_code, 0) << scored.err;
   EXPECT_THAT(scored.out, HasSubstr("position NEES "));
   EXPECT_THAT(scored.out, HasSubstr("with a position fix every 1, 2, 5 km: not known, the scored"));
@@ -141,12 +149,12 @@ TEST_F(StatedCovariance, InvalidOnesAreLeftOutCountedAndNoted) {
   EXPECT_EQ(untidy.at("tracked_frames"), 61) << "the poses are kept";
   EXPECT_EQ(untidy.at("alignments").at("init_scale").at("consistency").at("position").at("samples"),
             30);
-  EXPECT_THAT(read_text(path("second/log.jsonl")),
+  EXPECT_THAT(read_text(path(second_ + "/log.jsonl")),
               HasSubstr("frame 1: covariance: values (3, 2) = "));
   EXPECT_THAT(flight_.out, HasSubstr("30 of 60 stated covariances are invalid and left out"));
-  const std::string before = read_text(path("second/metrics.json"));
-  EXPECT_EQ(overfly_program({"evaluate", "--run", path("second")}).exit_code, 0);
-  EXPECT_EQ(read_text(path("second/metrics.json")), before) << "the rows have the covariances";
+  const std::string before = read_text(path(second_ + "/metrics.json"));
+  EXPECT_EQ(overfly_program({"evaluate", "--run", path(second_)}).exit_code, 0);
+  EXPECT_EQ(read_text(path(second_ + "/metrics.json")), before) << "the rows have the covariances";
 }
 
 }  // namespace
