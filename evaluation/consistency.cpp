@@ -18,13 +18,6 @@ constexpr std::array<std::pair<Honesty, const char*>, 3> kHonestyNames{
      {Honesty::kOverconfident, "overconfident"},
      {Honesty::kTooCautious, "too cautious"}}};
 
-/// Of the mean of N independent samples with n degrees of freedom each.
-Band band_95(int degrees, std::size_t samples) {
-  const auto count = static_cast<double>(samples);
-  const double all = count * degrees;
-  return {chi_square_quantile(0.025, all) / count, chi_square_quantile(0.975, all) / count};
-}
-
 }  // namespace
 
 const char* to_string(Honesty honesty) {
@@ -43,13 +36,19 @@ std::optional<Honesty> honesty_from(const std::string& text) {
 
 double Nees::deviation_ratio() const { return std::sqrt(mean / degrees); }
 
+Band nees_band_95(int degrees, std::size_t samples) {
+  const auto count = static_cast<double>(samples);
+  const double all = count * degrees;
+  return {chi_square_quantile(0.025, all) / count, chi_square_quantile(0.975, all) / count};
+}
+
 Nees nees_of(const std::vector<double>& squared, int degrees) {
   Nees nees;
   nees.degrees = degrees;
   nees.samples = static_cast<int>(squared.size());
   nees.mean = std::accumulate(squared.begin(), squared.end(), 0.0) / nees.samples;
-  nees.band_95 = band_95(degrees, squared.size());
-  nees.pose_band_95 = band_95(degrees, 1);
+  nees.band_95 = nees_band_95(degrees, squared.size());
+  nees.pose_band_95 = nees_band_95(degrees, 1);
   const auto inside = std::count_if(squared.begin(), squared.end(), [&](double value) {
     return value >= nees.pose_band_95.low && value <= nees.pose_band_95.high;
   });

@@ -1,6 +1,7 @@
 // Whether an estimator's errors are as large as the covariance that it states for them.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,12 @@ struct Band {
   double low = 0.0;
   double high = 0.0;
 };
+
+/// Where the mean of `samples` independent NEES with that many degrees of freedom lies with a
+/// probability of 95 %: chi-square quantiles of samples * degrees, divided by samples (Bar-Shalom,
+/// Li, Kirubarajan 2001, sec. 5.4.2).
+/// @pre both > 0
+[[nodiscard]] Band nees_band_95(int degrees, std::size_t samples);
 
 /// Normalised estimation errors squared (NEES), e^T P^-1 e with an error e and its covariance P:
 /// Bar-Shalom, Li, Kirubarajan 2001, Estimation with Applications to Tracking and Navigation, sec.
