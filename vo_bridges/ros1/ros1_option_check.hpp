@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/motion/pose.hpp"
+#include "core/motion/pose_covariance.hpp"
 #include "core/result.hpp"
 #include "middleware/ros1/master.hpp"
 #include "vo_bridges/ros1/ros1_options.hpp"
