@@ -33,9 +33,8 @@ TEST(ChiSquare, AgreesWithSciPy) {
   ASSERT_EQ(cases.size(), 28U);
   for (const auto& entry : cases) {
     const auto expected = entry.at("quantile").get<double>();
-    EXPECT_NEAR(chi_square_quantile(entry.at("share"), entry.at("degrees")),
-                expected,
-                1e-10 * expected)
+    EXPECT_NEAR(
+        chi_square_quantile(entry.at("share"), entry.at("degrees")), expected, 1e-10 * expected)
         << entry;
   }
 }
