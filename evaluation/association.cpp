@@ -116,8 +116,11 @@ Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_trut
   for (const EstimateSample& sample : estimate.samples) {
     if (!tracked(sample) || sample.map_id != *map_id) continue;
     if (const auto truth = truth_of(T_world_camera_truth, sample, options)) {
-      matches.push_back(
-          {truth->t_ns, truth->T_world_camera, sample.T_vo_camera, sample.scene_depth});
+      matches.push_back({truth->t_ns,
+                         truth->T_world_camera,
+                         sample.T_vo_camera,
+                         sample.scene_depth,
+                         sample.covariance});
     }
   }
   if (options.association == Association::kNearest) {

@@ -67,6 +67,8 @@ void add_errors(const std::vector<MatchedPose>& matches,
     score->rotation_euler_norm_deg = statistics_of(euler_deg);
   }
   score->relative = relative_errors(matches, aligned, options.rpe_lengths_m);
+  score->fix_drift = fix_drifts(matches, aligned, options.fix_intervals_m);
+  score->consistency = consistency_of(matches, *score);
 }
 
 }  // namespace overfly::evaluation

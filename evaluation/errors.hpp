@@ -1,6 +1,7 @@
 // Errors of aligned poses. Private to evaluation.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
@@ -18,9 +19,9 @@ namespace overfly::evaluation {
 [[nodiscard]] double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
                                     const Eigen::Quaterniond& R_world_body_b);
 
-/// Computes position, rotation and relative errors of a score whose S_world_vo is set, and the
-/// statistics of the first two. Rotation errors are set only if the alignment is not degenerate;
-/// relative errors do not depend on it.
+/// Computes position, rotation and relative errors of a score whose S_world_vo is set, the
+/// statistics of the first two, drift and consistency. Rotation errors are set only if the
+/// alignment is not degenerate; relative errors and drift do not depend on it.
 /// @pre !matches.empty()
 void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,
@@ -31,5 +32,15 @@ void add_errors(const std::vector<MatchedPose>& matches,
     const std::vector<MatchedPose>& matches,
     const std::vector<Pose>& T_world_camera_estimate,
     const std::vector<double>& lengths_m);
+
+/// @param T_world_camera_estimate  aligned poses, one for each match
+[[nodiscard]] std::vector<FixDrift> fix_drifts(const std::vector<MatchedPose>& matches,
+                                               const std::vector<Pose>& T_world_camera_estimate,
+                                               const std::vector<double>& intervals_m);
+
+/// Of a score whose mode, S_world_vo and degenerate are set. The first pose is left out where the
+/// alignment makes its error 0. Empty if no pose has a covariance.
+[[nodiscard]] std::optional<Consistency> consistency_of(const std::vector<MatchedPose>& matches,
+                                                        const AlignmentScore& score);
 
 }  // namespace overfly::evaluation

@@ -10,6 +10,8 @@
 #include "core/motion/estimate.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/result.hpp"
+#include "evaluation/consistency.hpp"
+#include "evaluation/fix_drift.hpp"
 
 namespace overfly::evaluation {
 
@@ -71,6 +73,7 @@ struct Options {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   /// KITTI's, and those between the position fixes of a long flight.
   std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800, 1000, 2000, 5000};
+  std::vector<double> fix_intervals_m{1000, 2000, 5000};  ///< between position fixes
 };
 
 /// One truth-estimate pair, in time order.
@@ -79,6 +82,7 @@ struct MatchedPose {
   Pose T_world_camera;  ///< truth
   Pose T_vo_camera;     ///< estimate
   std::optional<double> scene_depth;
+  PoseCovariancePtr covariance = nullptr;  ///< of T_vo_camera's error; null if not stated
 };
 
 /// Root mean square, mean, median and maximum of an error.
@@ -120,7 +124,9 @@ struct AlignmentScore {
   /// uses the last pose before it.
   double position_rmse_hold_m = 0.0;
   std::vector<RelativeError> relative;
-  std::vector<std::string> notes;  ///< e.g. "scale from the path of the first 5 s"
+  std::vector<FixDrift> fix_drift;         ///< one for each of Options::fix_intervals_m
+  std::optional<Consistency> consistency;  ///< if a scored pose has a covariance
+  std::vector<std::string> notes;          ///< e.g. "scale from the path of the first 5 s"
   /// Why the positions do not determine the rotation. Position errors remain valid.
   std::optional<std::string> degenerate;
 };
@@ -133,6 +139,7 @@ struct Score {
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
+  CovarianceCounts covariances;
   std::vector<std::int64_t> matched_t_ns;  ///< stamps of the matched poses, in time order
   /// Results by mode. If the data cannot determine a mode, `unavailable` has the reason instead.
   std::map<AlignmentMode, AlignmentScore> alignments;

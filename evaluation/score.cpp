@@ -64,6 +64,16 @@ std::vector<std::string> common_notes(const Score& score,
   return notes;
 }
 
+CovarianceCounts covariances_of(const EstimateTrack& estimate) {
+  CovarianceCounts counts;
+  for (const EstimateSample& sample : estimate.samples) {
+    if (sample.state != TrackingState::kTracking) continue;
+    if (sample.covariance) ++counts.stated;
+    if (sample.covariance_left_out) ++counts.left_out;
+  }
+  return counts;
+}
+
 }  // namespace
 
 Score score(const Trajectory& T_world_camera_truth,
@@ -73,6 +83,7 @@ Score score(const Trajectory& T_world_camera_truth,
   const Result<std::vector<MatchedPose>> matches =
       associate(T_world_camera_truth, estimate, options);
   const std::vector<FlownFrame> flown = flown_frames(estimate, options);
+  result.covariances = covariances_of(estimate);
   add_outcome(flown, matches ? *matches : std::vector<MatchedPose>{}, &result);
   if (!matches) {
     for (const AlignmentMode mode : all_alignment_modes()) {

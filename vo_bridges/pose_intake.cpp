@@ -44,6 +44,7 @@ Status PoseIntake::take(VoEstimate& estimate) {
   }
   if (fault.empty()) {
     in_a_row_ = 0;
+    take_covariance(estimate);
     if (sample.state != TrackingState::kTracking) sample.T_vo_camera = {};
     Eigen::Quaterniond& rotation = sample.T_vo_camera.rotation;
     if (std::abs(rotation.norm() - 1.0) > kExactlyUnit) rotation.normalize();
@@ -53,10 +54,32 @@ Status PoseIntake::take(VoEstimate& estimate) {
   sample.state = TrackingState::kLost;
   sample.T_vo_camera = {};
   sample.scene_depth.reset();
+  sample.covariance.reset();
+  estimate.covariance.clear();
   if (++in_a_row_ < kMostInARow) return {};
   return Error{ErrorCode::kInternal,
                std::to_string(kMostInARow) + " answers in a row had no usable pose, the last one " +
                    "for frame " + std::to_string(sample.frame) + ": " + fault};
+}
+
+void PoseIntake::take_covariance(VoEstimate& estimate) {
+  EstimateSample& sample = estimate.sample;
+  const std::vector<double> values = std::exchange(estimate.covariance, {});
+  if (sample.state != TrackingState::kTracking) {
+    sample.covariance.reset();
+    return;
+  }
+  if (is_unstated(values)) return;
+  const Result<PoseCovariance> covariance = pose_covariance_from(values);
+  if (covariance) {
+    sample.covariance = std::make_shared<const PoseCovariance>(*covariance);
+    return;
+  }
+  sample.covariance_left_out = true;
+  if (std::exchange(covariance_noted_, true)) return;
+  notes_.push_back("warning: frame " + std::to_string(sample.frame) +
+                   ": covariance: " + covariance.error().message +
+                   "; this and later such covariances are left out and counted");
 }
 
 void PoseIntake::note(const EstimateSample& sample, const std::string& fault) {

@@ -44,6 +44,9 @@ struct VoEstimate {
   EstimateSample sample;  ///< frame and t_ns are those of the answered frame
   /// Why the received pose is invalid; empty if it is valid or absent.
   std::string pose_fault;
+  /// Values of the pose's covariance as received, row by row: 9 or 36, see pose_covariance_from().
+  /// PoseIntake moves them to `sample`. Empty if the estimator states none.
+  std::vector<double> covariance;
   std::optional<Image> debug_image;            ///< RGB, same size as the frame or smaller
   std::vector<Eigen::Vector3f> map_points_vo;  ///< observed map points, in vo units; may be empty
   std::map<std::string, double> timing_ms;     ///< wall time by stage

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/motion/pose.hpp"
+#include "core/motion/pose_covariance.hpp"
 
 namespace overfly {
 
@@ -24,6 +25,9 @@ struct EstimateSample {
   Pose T_vo_camera;                   ///< valid only while tracking
   std::optional<double> scene_depth;  ///< of the ground on the optical axis, or median [vo units]
   int map_id = 0;                     ///< +1 at every reset: new origin, new scale
+  PoseCovariancePtr covariance = nullptr;  ///< of T_vo_camera's error; null if not stated
+  /// The estimator stated a covariance that is none: it is left out, and the pose is kept.
+  bool covariance_left_out = false;
 };
 
 /// All outputs of one estimator in one run, ordered by frame.

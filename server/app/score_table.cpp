@@ -35,6 +35,68 @@ std::string degenerate_text(const evaluation::AlignmentScore& alignment) {
   return "    degenerate: " + *alignment.degenerate + "; no rotation error\n";
 }
 
+/// "    position NEES 3.1, expected in [2.9, 3.1]: overconfident, ..." of one part of the pose.
+std::string nees_text(const char* part, const std::optional<evaluation::Nees>& nees) {
+  if (!nees) return "";
+  const bool consistent = nees->honesty == evaluation::Honesty::kConsistent;
+  std::string text =
+      formatted("    %s NEES %.3g (expected %d; 95 %% band %.3g to %.3g, %d poses): ",
+                part,
+                nees->mean,
+                nees->degrees,
+                nees->band_95.low,
+                nees->band_95.high,
+                nees->samples);
+  text += evaluation::to_string(nees->honesty);
+  if (!consistent) {
+    text += formatted(", errors are %.3g times the stated deviations", nees->deviation_ratio());
+  }
+  return text + "\n";
+}
+
+std::string consistency_text(const evaluation::AlignmentScore& alignment) {
+  const auto& consistency = alignment.consistency;
+  if (!consistency) return "";
+  std::string text = nees_text("position", consistency->position) +
+                     nees_text("rotation", consistency->rotation) +
+                     nees_text("pose", consistency->pose);
+  if (consistency->singular > 0) {
+    text += formatted("    %d poses have a singular covariance: they have no NEES\n",
+                      consistency->singular);
+  }
+  return text;
+}
+
+std::string left_out_text(const evaluation::Score& score) {
+  if (score.covariances.left_out == 0) return "";
+  return formatted("  %d of %d stated covariances are invalid and left out\n",
+                   score.covariances.left_out,
+                   score.covariances.left_out + score.covariances.stated);
+}
+
+/// One line for each interval that the path has, and on request one for the others.
+std::string fix_drift_text(const evaluation::AlignmentScore& alignment, bool with_missing) {
+  std::string text;
+  std::string missing;
+  std::string reason;
+  for (const evaluation::FixDrift& drift : alignment.fix_drift) {
+    const std::string interval = formatted("%g", 1e-3 * drift.interval_m);
+    if (!drift.unavailable.empty()) {
+      missing += (missing.empty() ? "" : ", ") + interval;
+      reason = drift.unavailable;
+      continue;
+    }
+    text += formatted(
+        "    with a position fix every %s km: off by %.3f m (median), %.3f m (worst of %d)\n",
+        interval.c_str(),
+        drift.median_m,
+        drift.worst_m,
+        drift.segments);
+  }
+  if (missing.empty() || !with_missing) return text;
+  return text + "    with a position fix every " + missing + " km: not known, " + reason + "\n";
+}
+
 std::string outcome_text(const evaluation::Score& score) {
   std::string text = evaluation::to_string(score.outcome);
   if (score.outcome_time_s) text += formatted(" at %.1f s", *score.outcome_time_s);
@@ -85,7 +147,8 @@ std::string errors_text(const evaluation::Score& score, evaluation::AlignmentMod
   }
   const evaluation::AlignmentScore& alignment = found->second;
   return formatted("  %12.3f %12.3f ", alignment.position_m.rmse, alignment.position_rmse_hold_m) +
-         figure(rmse_of(alignment.rotation_deg), 12, 4) + "\n" + degenerate_text(alignment);
+         figure(rmse_of(alignment.rotation_deg), 12, 4) + "\n" + degenerate_text(alignment) +
+         consistency_text(alignment) + fix_drift_text(alignment, false);
 }
 
 }  // namespace
@@ -115,7 +178,7 @@ std::string score_table(const server::RunMetrics& metrics, evaluation::Alignment
                        outcome_text(estimator.score).c_str(),
                        100.0 * estimator.score.coverage,
                        static_cast<long long>(estimator.dropped_frames)) +
-             errors_text(estimator.score, mode);
+             errors_text(estimator.score, mode) + left_out_text(estimator.score);
   }
   return table + "RMSE, alignment " + evaluation::to_string(mode) + "\n";
 }
@@ -146,9 +209,11 @@ std::string alignment_table(const evaluation::Score& score) {
                        alignment->position_rmse_hold_m) +
              figure(rmse_of(alignment->rotation_deg), 12, 4) + " " +
              figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + "\n" +
-             degenerate_text(*alignment);
+             degenerate_text(*alignment) + consistency_text(*alignment) +
+             fix_drift_text(*alignment, true);
     for (const std::string& note : alignment->notes) table += "    " + note + "\n";
   }
+  table += left_out_text(score);
   for (const auto& [mode, reason] : by_name(score.unavailable)) {
     table += formatted("  %-12s X: ", mode.c_str()) + *reason + "\n";
   }

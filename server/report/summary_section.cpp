@@ -1,6 +1,7 @@
 #include "server/report/summary_section.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/text/number_text.hpp"
 #include "core/text/percent.hpp"
@@ -127,6 +128,26 @@ std::string scores_table(const ReportContent& content) {
   return scores.rows.empty() ? "" : table(scores);
 }
 
+/// " It is overconfident: ..." of an estimator that states covariances.
+std::string honesty_words(const AlignmentScore& aligned) {
+  if (!aligned.consistency || !aligned.consistency->honesty()) return "";
+  const evaluation::Consistency& consistency = *aligned.consistency;
+  const evaluation::Honesty honesty = *consistency.honesty();
+  if (honesty == evaluation::Honesty::kConsistent) {
+    return " Its errors agree with the covariances that it states.";
+  }
+  std::string text = " It is " + std::string(evaluation::to_string(honesty)) + ":";
+  const char* separator = " ";
+  for (const auto& [part, nees] :
+       {std::pair("position", consistency.position), std::pair("rotation", consistency.rotation)}) {
+    if (!nees) continue;
+    text += std::string(separator) + "its errors of the " + part + " are " +
+            figure_text(nees->deviation_ratio()) + " times the stated deviations";
+    separator = ", ";
+  }
+  return text + ".";
+}
+
 std::string errors_words(const ReportEntry& entry, AlignmentMode mode) {
   const AlignmentScore* aligned = entry.aligned(mode);
   const std::string name = evaluation::to_string(mode);
@@ -143,6 +164,7 @@ std::string errors_words(const ReportEntry& entry, AlignmentMode mode) {
           figure_text(figures.vertical_m) + " m vertically";
   text += figures.rotation_deg ? ", its rotation by " + figure_text(figures.rotation_deg) + " deg."
                                : "; the path does not determine its rotation.";
+  text += honesty_words(*aligned);
   for (const std::string& note : aligned->notes) text += " Note: " + note + ".";
   return text;
 }

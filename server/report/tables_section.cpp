@@ -119,6 +119,108 @@ std::string relative_table(const ReportContent& content) {
   return relative.rows.empty() ? "" : table(relative);
 }
 
+std::string range_text(const evaluation::Band& band) {
+  return figure_text(band.low) + " to " + figure_text(band.high);
+}
+
+void add_nees_row(const std::string& name,
+                  const char* part,
+                  const std::optional<evaluation::Nees>& nees,
+                  std::vector<std::vector<Cell>>& rows) {
+  if (!nees) return;
+  rows.push_back({{name},
+                  {part},
+                  {std::to_string(nees->samples), true},
+                  {figure_text(nees->mean), true},
+                  {std::to_string(nees->degrees), true},
+                  {range_text(nees->band_95), true},
+                  {figure_text(100.0 * nees->share_in_band), true},
+                  {figure_text(nees->deviation_ratio()), true},
+                  {evaluation::to_string(nees->honesty)}});
+}
+
+std::string honesty_table(const ReportContent& content) {
+  Table honesty;
+  honesty.caption =
+      "Honesty of the covariances that estimators state, by the alignment " +
+      std::string(evaluation::to_string(content.alignment)) +
+      ": normalised estimation errors squared (NEES). An estimator is overconfident if their mean "
+      "is above the band of 95 %, in which the mean of as many independent poses would lie; those "
+      "of one flight are correlated, so that a mean slightly outside is no proof.";
+  honesty.head = {{"estimator"},
+                  {"part"},
+                  {"poses", true},
+                  {"mean NEES", true},
+                  {"expected", true},
+                  {"95 % band", true},
+                  {"poses in their band of 95 % [%]", true},
+                  {"errors / stated deviations", true},
+                  {"mark"}};
+  for (const ReportRun& run : content.runs) {
+    for (const ReportEstimate& estimate : run.estimates) {
+      const AlignmentScore* aligned = ReportEntry{&run, &estimate}.aligned(content.alignment);
+      if (aligned == nullptr || !aligned->consistency) continue;
+      const std::string name = name_of(run, estimate);
+      add_nees_row(name, "position", aligned->consistency->position, honesty.rows);
+      add_nees_row(name, "rotation", aligned->consistency->rotation, honesty.rows);
+      add_nees_row(name, "pose", aligned->consistency->pose, honesty.rows);
+    }
+  }
+  return honesty.rows.empty() ? "" : table(honesty);
+}
+
+/// One row for each interval that the path has, and one for the others.
+void add_fix_drift_rows(const std::string& name,
+                        const std::vector<evaluation::FixDrift>& drifts,
+                        std::vector<std::vector<Cell>>& rows) {
+  std::string missing;
+  std::string reason;
+  for (const evaluation::FixDrift& drift : drifts) {
+    const std::string interval = figure_text(1e-3 * drift.interval_m);
+    if (!drift.unavailable.empty()) {
+      missing += (missing.empty() ? "" : ", ") + interval;
+      reason = drift.unavailable;
+      continue;
+    }
+    rows.push_back({{name},
+                    {interval, true},
+                    {figure_text(drift.median_m), true},
+                    {figure_text(drift.worst_m), true},
+                    {figure_text(drift.horizontal_median_m), true},
+                    {figure_text(drift.horizontal_worst_m), true},
+                    {std::to_string(drift.segments), true},
+                    {std::to_string(drift.apart), true}});
+  }
+  if (!missing.empty()) {
+    rows.push_back({{name}, {missing, true}, {"X: " + reason, false, false, 6}});
+  }
+}
+
+std::string fix_drift_table(const ReportContent& content) {
+  Table drifts;
+  drifts.caption =
+      "Drift between position fixes: how far off the estimate is when the next fix comes, with a "
+      "fix at every interval of the true path. A fix sets position and orientation to the truth; "
+      "the scale is that of the alignment " +
+      std::string(evaluation::to_string(content.alignment)) + ".";
+  drifts.head = {{"estimator"},
+                 {"interval [km]", true},
+                 {"median [m]", true},
+                 {"worst [m]", true},
+                 {"horizontal median [m]", true},
+                 {"horizontal worst [m]", true},
+                 {"segments", true},
+                 {"without overlap", true}};
+  for (const ReportRun& run : content.runs) {
+    for (const ReportEstimate& estimate : run.estimates) {
+      const AlignmentScore* aligned = ReportEntry{&run, &estimate}.aligned(content.alignment);
+      if (aligned == nullptr) continue;
+      add_fix_drift_rows(name_of(run, estimate), aligned->fix_drift, drifts.rows);
+    }
+  }
+  return drifts.rows.empty() ? "" : table(drifts);
+}
+
 std::string fields_table(const std::string& caption, const Json& document) {
   Table fields;
   fields.caption = caption;
@@ -259,6 +361,7 @@ std::string scores_section(const ReportContent& content) {
   std::string markup = "<section id=\"scores\">\n" + heading(2, "All scores");
   markup += scores.rows.empty() ? paragraph("No estimator.") : table(scores);
   const std::string relative = relative_table(content);
+  markup += honesty_table(content) + fix_drift_table(content);
   markup += remarks_of(content) + (relative.empty() ? "" : folded("Relative errors", relative));
   return markup + "</section>\n";
 }

@@ -15,7 +15,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using evaluation::AlignmentMode;
 using evaluation::AlignmentScore;
+using evaluation::Consistency;
 using evaluation::ErrorStatistics;
+using evaluation::FixDrift;
+using evaluation::Nees;
 using evaluation::RelativeError;
 using evaluation::Score;
 
@@ -51,6 +54,45 @@ Json camera_metrics_json(const CameraMetrics& camera) {
   return value;
 }
 
+Json nees_json(const std::optional<Nees>& nees) {
+  if (!nees) return nullptr;
+  return {{"degrees", nees->degrees},
+          {"samples", nees->samples},
+          {"mean", nees->mean},
+          {"band_95", {nees->band_95.low, nees->band_95.high}},
+          {"pose_band_95", {nees->pose_band_95.low, nees->pose_band_95.high}},
+          {"share_in_band", nees->share_in_band},
+          {"deviation_ratio", nees->deviation_ratio()},
+          {"honesty", evaluation::to_string(nees->honesty)}};
+}
+
+Json consistency_json(const Consistency& consistency) {
+  const auto honesty = consistency.honesty();
+  return {{"position", nees_json(consistency.position)},
+          {"rotation", nees_json(consistency.rotation)},
+          {"pose", nees_json(consistency.pose)},
+          {"singular", consistency.singular},
+          {"honesty", honesty ? Json(evaluation::to_string(*honesty)) : Json(nullptr)}};
+}
+
+Json fix_drift_json(const std::vector<FixDrift>& drifts) {
+  Json list = Json::array();
+  for (const FixDrift& drift : drifts) {
+    Json& entry = list.emplace_back(Json{{"interval_m", drift.interval_m}});
+    if (!drift.unavailable.empty()) {
+      entry["unavailable"] = drift.unavailable;
+      continue;
+    }
+    entry["segments"] = drift.segments;
+    entry["apart"] = drift.apart;
+    entry["median_m"] = drift.median_m;
+    entry["worst_m"] = drift.worst_m;
+    entry["horizontal_median_m"] = drift.horizontal_median_m;
+    entry["horizontal_worst_m"] = drift.horizontal_worst_m;
+  }
+  return list;
+}
+
 Json alignment_json(const AlignmentScore& score) {
   Json relative = Json::array();
   for (const RelativeError& error : score.relative) {
@@ -64,7 +106,7 @@ Json alignment_json(const AlignmentScore& score) {
   const auto rotation = [&](double ErrorStatistics::*statistic) {
     return score.rotation_deg ? Json((*score.rotation_deg).*statistic) : Json(nullptr);
   };
-  return {
+  Json value = {
       {"scale", score.S_world_vo.scale},
       {"S_world_vo", std::move(S_world_vo)},
       {"matched", score.matched},
@@ -83,7 +125,10 @@ Json alignment_json(const AlignmentScore& score) {
        score.rotation_euler_norm_deg ? Json(score.rotation_euler_norm_deg->rmse) : Json(nullptr)},
       {"degenerate", or_null(score.degenerate)},
       {"relative", std::move(relative)},
+      {"fix_drift", fix_drift_json(score.fix_drift)},
       {"notes", score.notes}};
+  if (score.consistency) value["consistency"] = consistency_json(*score.consistency);
+  return value;
 }
 
 Json estimator_metrics_json(const EstimatorMetrics& estimator) {
@@ -198,6 +243,60 @@ std::vector<RelativeError> read_relative(const FileField& alignment) {
   return errors;
 }
 
+/// [low, high]
+void take(const FileField& object, const char* name, evaluation::Band& value) {
+  const auto field = object.find(name);
+  if (!field) return;
+  const std::vector<double> ends = field->numbers(2);
+  value = {ends[0], ends[1]};
+}
+
+std::optional<Nees> read_nees(const FileField& consistency, const char* name) {
+  const auto field = consistency.find(name);
+  if (!field || field->is_null()) return std::nullopt;
+  Nees nees;
+  nees.degrees = static_cast<int>(field->at("degrees").integer(1, 6));
+  take(*field, "samples", nees.samples);
+  take(*field, "mean", nees.mean);
+  take(*field, "band_95", nees.band_95);
+  take(*field, "pose_band_95", nees.pose_band_95);
+  take(*field, "share_in_band", nees.share_in_band);
+  const FileField honesty = field->at("honesty");
+  const auto known = evaluation::honesty_from(honesty.text());
+  if (!known) honesty.reject("be consistent, overconfident or too cautious");
+  nees.honesty = *known;
+  return nees;
+}
+
+std::optional<Consistency> read_consistency(const FileField& alignment) {
+  const auto field = alignment.find("consistency");
+  if (!field) return std::nullopt;
+  Consistency consistency;
+  consistency.position = read_nees(*field, "position");
+  consistency.rotation = read_nees(*field, "rotation");
+  consistency.pose = read_nees(*field, "pose");
+  take(*field, "singular", consistency.singular);
+  return consistency;
+}
+
+std::vector<FixDrift> read_fix_drift(const FileField& alignment) {
+  std::vector<FixDrift> drifts;
+  const auto field = alignment.find("fix_drift");
+  if (!field) return drifts;
+  for (const FileField& entry : field->items()) {
+    FixDrift& drift = drifts.emplace_back();
+    take(entry, "interval_m", drift.interval_m);
+    take(entry, "unavailable", drift.unavailable);
+    take(entry, "segments", drift.segments);
+    take(entry, "apart", drift.apart);
+    take(entry, "median_m", drift.median_m);
+    take(entry, "worst_m", drift.worst_m);
+    take(entry, "horizontal_median_m", drift.horizontal_median_m);
+    take(entry, "horizontal_worst_m", drift.horizontal_worst_m);
+  }
+  return drifts;
+}
+
 Similarity read_similarity(const FileField& field) {
   const Result<Pose> T = pose_from(field.value());
   if (!T) field.reject("be a similarity (" + T.error().message + ")");
@@ -230,6 +329,8 @@ AlignmentScore read_alignment(const FileField& field, AlignmentMode mode) {
   if (euler_norm_rmse_deg) score.rotation_euler_norm_deg.emplace().rmse = *euler_norm_rmse_deg;
   take(field, "degenerate", score.degenerate);
   score.relative = read_relative(field);
+  score.fix_drift = read_fix_drift(field);
+  score.consistency = read_consistency(field);
   take(field, "notes", score.notes);
   return score;
 }
@@ -255,6 +356,10 @@ Score read_score(const FileField& field) {
   take(field, "initialised_at_s", score.initialised_at_s);
   take(field, "frames", score.frames);
   take(field, "tracked_frames", score.tracked_frames);
+  if (const auto covariances = field.find("covariances")) {
+    take(*covariances, "stated", score.covariances.stated);
+    take(*covariances, "left_out", score.covariances.left_out);
+  }
   for_each_mode(field.find("alignments"), [&](AlignmentMode mode, const FileField& alignment) {
     if (alignment.find("S_world_vo")) score.alignments[mode] = read_alignment(alignment, mode);
   });
@@ -329,15 +434,20 @@ Json unavailable_json(const Score& score) {
 }
 
 Json json_from(const Score& score) {
-  return {{"outcome", evaluation::to_string(score.outcome)},
-          {"outcome_time_s", or_null(score.outcome_time_s)},
-          {"reset_count", score.reset_count},
-          {"coverage", score.coverage},
-          {"initialised_at_s", or_null(score.initialised_at_s)},
-          {"frames", score.frames},
-          {"tracked_frames", score.tracked_frames},
-          {"alignments", alignments_json(score)},
-          {"unavailable", unavailable_json(score)}};
+  Json value = {{"outcome", evaluation::to_string(score.outcome)},
+                {"outcome_time_s", or_null(score.outcome_time_s)},
+                {"reset_count", score.reset_count},
+                {"coverage", score.coverage},
+                {"initialised_at_s", or_null(score.initialised_at_s)},
+                {"frames", score.frames},
+                {"tracked_frames", score.tracked_frames},
+                {"alignments", alignments_json(score)},
+                {"unavailable", unavailable_json(score)}};
+  if (score.covariances.any()) {
+    value["covariances"] = {{"stated", score.covariances.stated},
+                            {"left_out", score.covariances.left_out}};
+  }
+  return value;
 }
 
 Json json_from(const RunMetrics& metrics) {

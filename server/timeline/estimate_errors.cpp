@@ -27,7 +27,23 @@ std::vector<FrameRow> frames_of(const RunTimeline& timeline,
   return timeline.frames(begin, end - std::min(begin, end), camera);
 }
 
+/// @param estimated  T_world_camera of the row
+std::optional<double> position_nees(const EstimateSample& sample,
+                                    double scale,
+                                    const Pose& estimated,
+                                    const Pose& truth) {
+  if (sample.covariance == nullptr) return std::nullopt;
+  Similarity S_world_vo;
+  S_world_vo.scale = scale;
+  S_world_vo.rotation = estimated.rotation * sample.T_vo_camera.rotation.conjugate();
+  const Matrix6d P = in_target(S_world_vo, sample.covariance->matrix);
+  return squared_deviation(Eigen::Vector3d(truth.translation - estimated.translation),
+                           Eigen::Matrix3d(P.topLeftCorner<3, 3>()));
+}
+
 }  // namespace
+
+evaluation::Band position_nees_band() { return evaluation::nees_band_95(3, 1); }
 
 std::vector<std::optional<EstimateError>> errors_of(const RunTimeline& timeline,
                                                     std::size_t estimator,
@@ -56,7 +72,8 @@ std::vector<std::optional<EstimateError>> errors_of(const RunTimeline& timeline,
     errors[i] = {
         evaluation::axis_error(
             truth, frame->t_ns, frame->T_world_camera, estimated.translation, T_body_camera),
-        rotation_angle_rad(frame->T_world_camera.rotation, estimated.rotation)};
+        rotation_angle_rad(frame->T_world_camera.rotation, estimated.rotation),
+        position_nees(rows[i].sample, alignment.scale(rows[i]), estimated, frame->T_world_camera)};
   }
   return errors;
 }

@@ -71,6 +71,10 @@ std::optional<Pose> RowAlignment::T_world_body(const EstimateRow& row) const {
   return scored_->S_world_vo * row.sample.T_vo_camera * scored_->T_camera_body;
 }
 
+double RowAlignment::scale(const EstimateRow& row) const {
+  return scored_ ? scored_->S_world_vo.scale : row.scale;
+}
+
 std::optional<Similarity> RowAlignment::S_world_vo(int map_id, const Similarity& recorded) const {
   if (!scored_) return recorded;
   if (map_id != scored_->map_id) return std::nullopt;

@@ -29,6 +29,8 @@ class RowAlignment {
 
   /// Empty while not tracking, and for rows of a map that was not scored.
   [[nodiscard]] std::optional<Pose> T_world_body(const EstimateRow& row) const;
+  /// The scale of T_world_body. @pre T_world_body(row) is not empty
+  [[nodiscard]] double scale(const EstimateRow& row) const;
   /// The similarity of a map; empty if the map was not scored.
   /// @param recorded  that of `init_scale`, which each map has by itself
   [[nodiscard]] std::optional<Similarity> S_world_vo(int map_id, const Similarity& recorded) const;

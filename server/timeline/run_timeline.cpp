@@ -116,6 +116,11 @@ std::vector<std::string> RunTimeline::counter_names(std::size_t estimator) const
   return estimates_.at(estimator).counter_names;
 }
 
+bool RunTimeline::states_covariances(std::size_t estimator) const {
+  const std::lock_guard lock(mutex_);
+  return estimates_.at(estimator).states_covariances;
+}
+
 std::optional<FrameRow> RunTimeline::frame_at(std::int64_t t_ns, std::size_t camera) const {
   const std::lock_guard lock(mutex_);
   return last_at(cameras_.at(camera).rows, t_ns, [](const FrameRow& row) { return row.t_ns; });
@@ -215,6 +220,7 @@ void RunTimeline::append_estimate(std::size_t estimator,
     }
     row.counters[index] = value;
   }
+  if (row.sample.covariance) own.states_covariances = true;
   own.rows.push_back(std::move(row));
   changed();
 }

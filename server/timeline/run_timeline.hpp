@@ -64,6 +64,8 @@ class RunTimeline {
   [[nodiscard]] std::size_t log_count() const;
   /// Names of the counters of an estimator's answers so far, in the order of EstimateRow::counters.
   [[nodiscard]] std::vector<std::string> counter_names(std::size_t estimator) const;
+  /// True if an answer so far has a covariance.
+  [[nodiscard]] bool states_covariances(std::size_t estimator) const;
   /// Row of the last frame stamped at or before t; empty before the first.
   [[nodiscard]] std::optional<FrameRow> frame_at(std::int64_t t_ns,
                                                  std::size_t camera = kMainCamera) const;
@@ -111,6 +113,7 @@ class RunTimeline {
   struct EstimatorRows {
     std::vector<EstimateRow> rows;
     std::vector<std::string> counter_names;
+    bool states_covariances = false;
     EstimatorStatus status;
     std::optional<StampedImage> debug;
     std::vector<Eigen::Vector3f> points;

@@ -65,6 +65,7 @@ void append_estimates(const RunRecords& records,
     EstimateRow row;
     row.sample = record.sample;
     row.T_world_body = alignment.add(record.sample, frame->T_world_camera, frame->axis_depth_m);
+    if (const auto& S_world_vo = alignment.S_world_vo()) row.scale = S_world_vo->scale;
     const auto latency = timings.latency_ms.find(record.sample.frame);
     if (latency != timings.latency_ms.end()) row.latency_ms = latency->second;
     timeline.append_estimate(index, std::move(row), record.counters);

@@ -104,5 +104,49 @@ TEST(PoseIntake, GivesUpAfterManyInARow) {
             "is not finite");
 }
 
+TEST(PoseIntake, TakesACovarianceThatIsOne) {
+  PoseIntake poses;
+  VoEstimate estimate = answer(1);
+  estimate.covariance = {4, 1, 0, 1, 5, 2, 0, 2, 6};
+  ASSERT_TRUE(poses.take(estimate));
+  ASSERT_NE(estimate.sample.covariance, nullptr);
+  EXPECT_EQ(estimate.sample.covariance->matrix(1, 2), 2.0);
+  EXPECT_THAT(estimate.covariance, IsEmpty());
+  ASSERT_TRUE(poses.take(estimate)) << "an answer passes two of these";
+  EXPECT_NE(estimate.sample.covariance, nullptr);
+  EXPECT_THAT(poses.take_notes(), IsEmpty());
+
+  VoEstimate unstated = answer(2);
+  unstated.covariance.assign(36, 0.0);
+  ASSERT_TRUE(poses.take(unstated));
+  EXPECT_EQ(unstated.sample.covariance, nullptr);
+  EXPECT_FALSE(unstated.sample.covariance_left_out);
+
+  VoEstimate lost = answer(3);
+  lost.sample.state = TrackingState::kLost;
+  lost.covariance = {4, 1, 0, 1, 5, 2, 0, 2, 6};
+  ASSERT_TRUE(poses.take(lost));
+  EXPECT_EQ(lost.sample.covariance, nullptr) << "there is no pose";
+}
+
+TEST(PoseIntake, LeavesOutACovarianceThatIsNoneAndKeepsThePose) {
+  PoseIntake poses;
+  for (const std::vector<double>& odd : {std::vector<double>{4, 1, 0, 1, 5, kNan, 0, 2, 6},
+                                         std::vector<double>{4, 1, 0, 2, 5, 2, 0, 2, 6},
+                                         std::vector<double>{-4, 0, 0, 0, 5, 2, 0, 2, 6},
+                                         std::vector<double>{1, 2}}) {
+    VoEstimate estimate = answer(6);
+    estimate.covariance = odd;
+    ASSERT_TRUE(poses.take(estimate));
+    EXPECT_EQ(estimate.sample.state, TrackingState::kTracking);
+    EXPECT_EQ(estimate.sample.T_vo_camera.translation.x(), 1.0);
+    EXPECT_EQ(estimate.sample.covariance, nullptr);
+    EXPECT_TRUE(estimate.sample.covariance_left_out);
+  }
+  EXPECT_THAT(poses.take_notes(),
+              ElementsAre(HasSubstr("warning: frame 6: covariance: value (2, 3) = nan")))
+      << "told once";
+}
+
 }  // namespace
 }  // namespace overfly

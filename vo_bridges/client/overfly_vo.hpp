@@ -123,6 +123,10 @@ struct Answer {
   DebugImage debug_image{};  ///< only if debug_wanted
   std::vector<std::array<float, 3>>
       map_points{};  ///< only if debug_wanted; in the frame of position
+  /// Covariance of the pose's error, row by row: 36 values of position x, y, z and small rotations
+  /// about the fixed axes x, y, z of the frame of `position` [rad]; or the 9 of the position alone.
+  /// Empty = not stated.
+  std::vector<double> covariance{};
 };
 
 /// The frame converted to RGB, to draw on.
@@ -614,6 +618,11 @@ inline std::string payload_of(const Answer& answer,
   put<std::uint32_t>(&payload, 1);  // the CRC was computed
   payload += figures_text("counter", answer.counters, not_finite);
   payload += figures_text("timing_ms", answer.timings_ms, not_finite);
+  if (!answer.covariance.empty()) {
+    payload += "covariance";
+    for (const double value : answer.covariance) payload += " " + text_of(value);
+    payload += "\n";
+  }
   return payload;
 }
 

@@ -83,6 +83,9 @@ class Answer:
     timings_ms: dict = dataclasses.field(default_factory=dict)
     debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), if debug_wanted
     map_points: list = ()  # of (x, y, z), in the frame of position, if debug_wanted
+    # Of the pose's error, row by row or as rows: 6 x 6 of position x, y, z and small rotations about
+    # the fixed axes x, y, z of the frame of position [rad], or 3 x 3 of the position alone.
+    covariance: list = ()  # empty = not stated
 
 
 class Estimator:
@@ -235,6 +238,13 @@ def _add_samples(payload, frame):
         at = end
 
 
+def _covariance_text(covariance):
+    values = []
+    for row in covariance:
+        values += [float(value) for value in row] if hasattr(row, "__len__") else [float(row)]
+    return f"covariance {' '.join(map(repr, values))}\n" if values else ""
+
+
 def _send_answer(connection, frame, answer, crc32):
     if frame.debug_wanted and answer.debug_image:
         width, height, channels, pixels = answer.debug_image
@@ -255,6 +265,7 @@ def _send_answer(connection, frame, answer, crc32):
             connection.send(_LOG, struct.pack("<I", WARNING) + (
                 f"{key} {name} is not finite: this and later such values are ignored"
             ).encode())
+    text += _covariance_text(answer.covariance)
     connection.send(_ANSWER, struct.pack("<qII3d4ddII", frame.index, answer.state, answer.map_id,
                                          *answer.position, *answer.quaternion_xyzw,
                                          answer.scene_depth, crc32, 1) + text.encode())

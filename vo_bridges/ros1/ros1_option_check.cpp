@@ -137,4 +137,15 @@ Pose T_vo_camera_from(const Pose& published, const Ros1EstimatorOptions& options
   return T;
 }
 
+std::vector<double> covariance_from(const Pose& published,
+                                    std::span<const double> row_major,
+                                    const Ros1EstimatorOptions& options) {
+  std::vector<double> values(row_major.begin(), row_major.end());
+  if (!options.pose_is_camera_from_world || values.size() != 36) return values;
+  using RowMajor = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  Eigen::Map<RowMajor> matrix(values.data());
+  matrix = inverted_covariance(published, matrix);
+  return values;
+}
+
 }  // namespace overfly::ros1

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/motion/pose.hpp"
+#include "core/motion/pose_covariance.hpp"
 #include "core/result.hpp"
 #include "middleware/ros1/master.hpp"
 #include "vo_bridges/ros1/ros1_options.hpp"
@@ -23,5 +26,12 @@ namespace overfly::ros1 {
 
 /// Converts a pose as published by the node to T_vo_camera with optical axes.
 [[nodiscard]] Pose T_vo_camera_from(const Pose& published, const Ros1EstimatorOptions& options);
+
+/// Converts the covariance of a published pose, 36 values row by row, to that of T_vo_camera. The
+/// camera's own axes do not matter, because its rotations are about the fixed axes of the parent
+/// frame. Invalid values remain invalid. Empty without values.
+[[nodiscard]] std::vector<double> covariance_from(const Pose& published,
+                                                  std::span<const double> row_major,
+                                                  const Ros1EstimatorOptions& options);
 
 }  // namespace overfly::ros1

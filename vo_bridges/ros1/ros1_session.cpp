@@ -109,18 +109,22 @@ Status Session::await_readiness(const VoFrame& frame, std::int64_t stamp_ns) {
 }
 
 TopicHandlers Session::handlers() {
-  return {
-      [this](std::int64_t stamp_ns, const std::optional<Pose>& pose) { take_pose(stamp_ns, pose); },
-      [this](const ImageMessage::ConstPtr& image) {
-        if (debug_) debug_images_.deliver(image);
-      }};
+  return {[this](std::int64_t stamp_ns,
+                 const std::optional<Pose>& pose,
+                 std::span<const double> covariance) { take_pose(stamp_ns, pose, covariance); },
+          [this](const ImageMessage::ConstPtr& image) {
+            if (debug_) debug_images_.deliver(image);
+          }};
 }
 
-void Session::take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published) {
+void Session::take_pose(std::int64_t stamp_ns,
+                        const std::optional<Pose>& published,
+                        std::span<const double> covariance) {
   VoEstimate answer;
   if (published) {
     answer.sample.state = TrackingState::kTracking;
     answer.sample.T_vo_camera = T_vo_camera_from(*published, options_);
+    answer.covariance = covariance_from(*published, covariance, options_);
   } else {
     answer.pose_fault = "the pose is not finite, or its quaternion's norm is not 1";
   }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,9 @@ class Session final : public VoPort {
   using Clock = AnswerPatience::Clock;
 
   [[nodiscard]] TopicHandlers handlers();
-  void take_pose(std::int64_t stamp_ns, const std::optional<Pose>& published);
+  void take_pose(std::int64_t stamp_ns,
+                 const std::optional<Pose>& published,
+                 std::span<const double> covariance);
   void report_strays();
   /// Waits until the node advertises its poses, so that no frame is lost. Nodes do this after
   /// loading, some only after they received the calibration.

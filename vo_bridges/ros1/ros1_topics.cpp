@@ -157,21 +157,25 @@ Status Topics::subscribe_pose() {
       return subscribe<PoseStampedMessage>(
           topic,
           [this](const PoseStampedMessage::ConstPtr& message) {
-            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose));
+            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose), {});
           },
           poses_);
     case Ros1PoseType::kPoseWithCovarianceStamped:
       return subscribe<PoseWithCovarianceStampedMessage>(
           topic,
           [this](const PoseWithCovarianceStampedMessage::ConstPtr& message) {
-            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose.pose));
+            handlers_.pose(ns_of(message->header.stamp),
+                           pose_from(message->pose.pose),
+                           message->pose.covariance);
           },
           poses_);
     case Ros1PoseType::kOdometry:
       return subscribe<OdometryMessage>(
           topic,
           [this](const OdometryMessage::ConstPtr& message) {
-            handlers_.pose(ns_of(message->header.stamp), pose_from(message->pose.pose));
+            handlers_.pose(ns_of(message->header.stamp),
+                           pose_from(message->pose.pose),
+                           message->pose.covariance);
           },
           poses_);
     case Ros1PoseType::kTf:
@@ -183,7 +187,7 @@ Status Topics::subscribe_pose() {
         for (const TransformStampedMessage& transform : message->transforms) {
           if (!same_frame(transform.header.frame_id, options_.vo_frame)) continue;
           if (!same_frame(transform.child_frame_id, options_.camera_frame)) continue;
-          handlers_.pose(ns_of(transform.header.stamp), pose_from(transform.transform));
+          handlers_.pose(ns_of(transform.header.stamp), pose_from(transform.transform), {});
         }
       },
       poses_);

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,10 @@ namespace overfly::ros1 {
 /// Handlers for incoming messages; called on the topics' thread until the topics are destroyed.
 struct TopicHandlers {
   /// A pose as published; empty if it is invalid (not finite, or a bad quaternion).
-  std::function<void(std::int64_t stamp_ns, const std::optional<Pose>& pose)> pose;
+  /// @param covariance  as published, 36 values; empty if the message has none
+  std::function<void(
+      std::int64_t stamp_ns, const std::optional<Pose>& pose, std::span<const double> covariance)>
+      pose;
   std::function<void(const ImageMessage::ConstPtr& image)> debug_image;
 };
 

@@ -21,18 +21,35 @@ struct ErrorValues {
   std::vector<double> horizontal_m;
   std::vector<double> vertical_m;
   std::vector<double> percent_of_path;
+  CellHonesty honesty;
+  std::vector<double> deviation_ratios;
 
   [[nodiscard]] CellErrors spreads() const {
+    CellHonesty all_honesty = honesty;
+    all_honesty.deviation_ratio = spread_of(deviation_ratios);
     return {spread_of(position_m),
             spread_of(rotation_deg),
             spread_of(horizontal_m),
             spread_of(vertical_m),
-            spread_of(percent_of_path)};
+            spread_of(percent_of_path),
+            all_honesty};
   }
 };
 
 void keep(std::vector<double>& values, const std::optional<double>& value) {
   if (value && std::isfinite(*value)) values.push_back(*value);
+}
+
+void add_honesty(const evaluation::AlignmentScore& score, ErrorValues& values) {
+  if (!score.consistency) return;
+  const auto honesty = score.consistency->honesty();
+  if (!honesty) return;
+  ++values.honesty.flights;
+  if (*honesty == evaluation::Honesty::kOverconfident) ++values.honesty.overconfident;
+  if (*honesty == evaluation::Honesty::kTooCautious) ++values.honesty.too_cautious;
+  if (const auto& position = score.consistency->position) {
+    keep(values.deviation_ratios, position->deviation_ratio());
+  }
 }
 
 void add_flight_errors(const FlightScore& flight,
@@ -47,6 +64,7 @@ void add_flight_errors(const FlightScore& flight,
   if (rotation) keep(values.rotation_deg, rotation->rmse);
   keep(values.horizontal_m, score.horizontal_rmse_m);
   keep(values.vertical_m, score.vertical_rmse_m);
+  add_honesty(score, values);
   if (flight.path_length_m > 0.0) {
     keep(values.percent_of_path, 100.0 * position_m / flight.path_length_m);
   }

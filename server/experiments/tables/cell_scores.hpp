@@ -39,6 +39,15 @@ struct Spread {
   evaluation::Quartiles quartiles;
 };
 
+/// Of the flights whose estimator states covariances.
+struct CellHonesty {
+  std::size_t flights = 0;
+  std::size_t overconfident = 0;
+  std::size_t too_cautious = 0;
+  /// Of the position: by which factor its errors exceed the stated standard deviations.
+  std::optional<Spread> deviation_ratio;
+};
+
 /// Empty where no flight counts: an X enters no mean.
 struct CellErrors {
   std::optional<Spread> position_m;
@@ -46,6 +55,7 @@ struct CellErrors {
   std::optional<Spread> horizontal_m;  ///< without holding the last pose
   std::optional<Spread> vertical_m;    ///< without holding the last pose
   std::optional<Spread> percent_of_path;
+  CellHonesty honesty;
 };
 
 struct CellScores {

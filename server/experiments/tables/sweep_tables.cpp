@@ -55,7 +55,12 @@ Json errors_json(const CellErrors& errors) {
           {"rotation_deg", spread_json(errors.rotation_deg)},
           {"horizontal_m", spread_json(errors.horizontal_m)},
           {"vertical_m", spread_json(errors.vertical_m)},
-          {"percent_of_path", spread_json(errors.percent_of_path)}};
+          {"percent_of_path", spread_json(errors.percent_of_path)},
+          {"honesty",
+           {{"flights", errors.honesty.flights},
+            {"overconfident", errors.honesty.overconfident},
+            {"too_cautious", errors.honesty.too_cautious},
+            {"deviation_ratio", spread_json(errors.honesty.deviation_ratio)}}}};
 }
 
 const char* verdict_name(DifferenceVerdict verdict) {
@@ -152,7 +157,7 @@ std::string csv_from(const SweepTables& tables) {
        {"position_m", "rotation_deg", "horizontal_m", "vertical_m", "percent_of_path"}) {
     for (const char* part : {"median", "q1", "q3"}) text += std::string(",") + name + "_" + part;
   }
-  text += ",outcomes\n";
+  text += ",outcomes,covariance_flights,overconfident,too_cautious,deviation_ratio_median\n";
   for (const CellScores& row : tables.rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {
       for (const ShownAxis& axis : tables.scores.axes) {
@@ -170,7 +175,12 @@ std::string csv_from(const SweepTables& tables) {
       for (const auto& [name, count] : row.outcomes) {
         outcomes += (outcomes.empty() ? "" : " ") + name + ":" + std::to_string(count);
       }
-      text += "," + outcomes + "\n";
+      const CellHonesty& honesty = errors.honesty;
+      text +=
+          "," + outcomes + "," + std::to_string(honesty.flights) + "," +
+          std::to_string(honesty.overconfident) + "," + std::to_string(honesty.too_cautious) + "," +
+          (honesty.deviation_ratio ? number_text(honesty.deviation_ratio->quartiles.median) : "") +
+          "\n";
     }
   }
   return text;

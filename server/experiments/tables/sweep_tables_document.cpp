@@ -212,6 +212,41 @@ DocumentSection outcome_section(const SweepTables& tables) {
   return section;
 }
 
+bool states_covariances(const CellScores& row, std::size_t convention) {
+  return row.errors[convention].honesty.flights > 0;
+}
+
+/// The marks of the estimators that state covariances.
+DocumentSection honesty_section(const SweepTables& tables, std::size_t convention) {
+  DocumentSection section;
+  section.heading =
+      "Honesty of stated covariances, convention " + all_conventions()[convention].name;
+  section.paragraphs = {
+      "Flights whose mean normalised estimation error squared is above (overconfident) or below "
+      "(too cautious) its band of 95 %, and by which factor position errors exceed the stated "
+      "standard deviations: median and quartiles over the flights."};
+  add_axes(tables.scores, section.table.columns);
+  section.table.columns.push_back({"estimator", false});
+  for (const char* head : {"flights", "overconfident", "too cautious", "errors / stated"}) {
+    section.table.columns.push_back({head, true});
+  }
+  for (const CellScores& row : tables.rows) {
+    if (!states_covariances(row, convention)) continue;
+    const CellHonesty& honesty = row.errors[convention].honesty;
+    std::vector<TableCell> line = axis_cells(tables.scores, row.cell);
+    line.push_back({row.estimator, false});
+    for (const std::size_t count : {honesty.flights, honesty.overconfident, honesty.too_cautious}) {
+      line.push_back({std::to_string(count), false});
+    }
+    line.push_back({honesty.deviation_ratio
+                        ? quartiles_text(honesty.deviation_ratio, honesty.deviation_ratio)
+                        : "-",
+                    false});
+    section.table.rows.push_back(std::move(line));
+  }
+  return section;
+}
+
 std::string verdict_text(const EstimatorDifference& result, double margin) {
   switch (result.verdict) {
     case DifferenceVerdict::kFirstBetter:
@@ -335,6 +370,10 @@ TableDocument document_from(const SweepTables& tables, const TableOptions& optio
     document.sections.push_back(published_section(tables, *options.published));
   }
   document.sections.push_back(outcome_section(tables));
+  for (std::size_t i = 0; i < all_conventions().size(); ++i) {
+    DocumentSection honesty = honesty_section(tables, i);
+    if (!honesty.table.rows.empty()) document.sections.push_back(std::move(honesty));
+  }
   for (std::size_t i = 0; i < all_conventions().size(); ++i) {
     if (!tables.differences[i].empty()) {
       document.sections.push_back(difference_section(tables, i, options.differences));

@@ -113,6 +113,24 @@ void add_error_columns(const std::vector<std::optional<server::EstimateError>>& 
   add("error_rotation_deg", [](const Error& error) { return deg_from_rad(error.rotation_rad); });
 }
 
+/// The position's NEES and the band in which that of one pose lies with a probability of 95 %; only
+/// for rows that have one.
+void add_honesty_columns(const std::vector<std::optional<server::EstimateError>>& errors,
+                         json* columns) {
+  const auto has_nees = [](const auto& error) { return error && error->position_nees; };
+  if (std::none_of(errors.begin(), errors.end(), has_nees)) return;
+  const evaluation::Band band = server::position_nees_band();
+  const auto add = [&](const char* name, auto value_of) {
+    (*columns)[name] = column(errors, [&](const std::optional<server::EstimateError>& error) {
+      return has_nees(error) ? rounded(value_of(*error), 1e6) : json(nullptr);
+    });
+  };
+  using Error = server::EstimateError;
+  add("nees_position", [](const Error& error) { return *error.position_nees; });
+  add("nees_low", [&](const Error& /*error*/) { return band.low; });
+  add("nees_high", [&](const Error& /*error*/) { return band.high; });
+}
+
 /// Null for a value that JSON cannot represent.
 json json_number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
@@ -155,7 +173,9 @@ json estimate_columns(const server::RunTimeline& timeline,
   columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
   add_pose_columns(
       rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
-  add_error_columns(server::errors_of(timeline, estimator, rows, alignment), &columns);
+  const auto errors = server::errors_of(timeline, estimator, rows, alignment);
+  add_error_columns(errors, &columns);
+  add_honesty_columns(errors, &columns);
   columns["error_scale_percent"] =
       column(server::scale_errors_of(timeline, estimator, rows, alignment),
              [](const std::optional<double>& error) {

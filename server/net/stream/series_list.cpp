@@ -45,6 +45,10 @@ constexpr Series kEstimate[] = {
     {"error_scale_percent", "scale error over 100 m", "%", "scale_error"},
     {"latency_ms", "latency", "ms", "latency"}};
 
+constexpr Series kHonesty[] = {{"nees_position", "NEES of the position", "", "nees"},
+                               {"nees_low", "95 % band, low", "", "nees"},
+                               {"nees_high", "95 % band, high", "", "nees"}};
+
 constexpr Series kVehicle[] = {{"battery_v", "battery", "V", "battery_voltage"},
                                {"battery_percent", "battery", "%", "battery"},
                                {"satellites", "satellites", "", "satellites"},
@@ -96,6 +100,7 @@ json series_json(const server::RunTimeline& timeline) {
     const std::string stream = "estimate/" + timeline.estimators()[i];
     add(stream, kPose, &all);
     add(stream, kEstimate, &all);
+    if (timeline.states_covariances(i)) add(stream, kHonesty, &all);
     for (const std::string& counter : timeline.counter_names(i)) {
       const auto [label, unit] = label_and_unit(counter);
       all.push_back({{"stream", stream},

@@ -46,6 +46,7 @@ struct EstimateRow {
   double latency_ms = 0.0;
   /// In the order of RunTimeline::counter_names; NaN or absent where the answer has none.
   std::vector<double> counters = {};
+  double scale = 0.0;  ///< of the alignment of T_world_body; 0 = not aligned
 };
 
 struct LogRow {

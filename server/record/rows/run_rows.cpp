@@ -75,6 +75,8 @@ Json json_from(const EstimateRecord& record) {
   if (record.sample.state == TrackingState::kTracking) {
     value["T_vo_camera"] = json_from(record.sample.T_vo_camera);
     if (record.sample.scene_depth) value["scene_depth"] = *record.sample.scene_depth;
+    if (record.sample.covariance) value["covariance"] = upper_triangle(*record.sample.covariance);
+    if (record.sample.covariance_left_out) value["covariance_left_out"] = true;
   }
   if (!record.counters.empty()) value["counters"] = record.counters;
   if (record.image_crc32) value["image_crc32"] = hex_text(*record.image_crc32);

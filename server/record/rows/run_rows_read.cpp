@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "server/files/file_field.hpp"
@@ -122,6 +123,25 @@ FrameRow read_frame(const FileField& value, const Pose& T_body_camera) {
   return row;
 }
 
+/// A covariance that is none is left out, as it is when an estimator states it: the pose stays.
+void read_covariance(const FileField& row, EstimateSample& sample) {
+  const auto flag = row.find("covariance_left_out");
+  sample.covariance_left_out = flag && flag->boolean();
+  const auto field = row.find("covariance");
+  if (!field || sample.state != TrackingState::kTracking) return;
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> upper;
+  for (const FileField& item : field->items()) {
+    upper.push_back(item.value().is_number() ? item.number() : kNoNumber);
+  }
+  const Result<PoseCovariance> covariance = pose_covariance_from(row_major_from_upper(upper));
+  if (covariance) {
+    sample.covariance = std::make_shared<const PoseCovariance>(*covariance);
+  } else {
+    sample.covariance_left_out = true;
+  }
+}
+
 EstimateRecord read_estimate(const FileField& value) {
   EstimateRecord record;
   record.sample.frame = value.at("frame").integer();
@@ -137,6 +157,7 @@ EstimateRecord read_estimate(const FileField& value) {
       value.at("map_id"), std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
   if (const auto pose = value.find("T_vo_camera")) record.sample.T_vo_camera = read_pose(*pose);
   record.sample.scene_depth = number_of_row(value, "scene_depth");
+  read_covariance(value, record.sample);
   if (const auto counters = value.find("counters")) {
     if (!counters->value().is_object()) counters->reject("be an object");
     for (const auto& [name, count] : counters->value().items()) {

@@ -142,6 +142,10 @@ void RunWarnings::add_of_estimators(const ReportRun& run) {
             std::to_string(metrics.hashes_compared) +
             " images arrived at the estimator with other pixels than were sent");
     }
+    if (metrics.score.covariances.left_out > 0) {
+      about(std::to_string(metrics.score.covariances.left_out) +
+            " stated covariances are invalid and left out");
+    }
     if (metrics.unanswered > 0) {
       about(std::to_string(metrics.unanswered) + " frames were not answered in time");
     }

@@ -40,11 +40,17 @@ def bootstrap_by_scipy(a, b):
             "high": float(result.confidence_interval.high)}
 
 
+def chi_square_by_scipy():
+    return [{"share": share, "degrees": degrees, "quantile": float(scipy.stats.chi2.ppf(share, degrees))}
+            for degrees in (1, 3, 6, 18, 1000, 33333, 6000000) for share in (0.025, 0.5, 0.95, 0.975)]
+
+
 def main():
     reference = {
         "quantiles": [{"values": values, "share": share, "quantile": float(np.quantile(values, share))}
                       for values in SAMPLES.values() for share in (0.0, 0.1, 0.25, 0.5, 0.75, 0.95, 1.0)],
         "holm": [{"p": values, "adjusted": holm_by_r(values)} for values in P_VALUES],
+        "chi_square": chi_square_by_scipy(),
         "bootstrap": [{"a": a, "b": b, **bootstrap_by_scipy(a, b)} for a, b in PAIRS.values()],
     }
     file = pathlib.Path(__file__).parent / "statistics_reference.json"

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "evaluation/statistics/chi_square.hpp"
 #include "evaluation/statistics/paired_bootstrap.hpp"
 #include "evaluation/statistics/sample_quantile.hpp"
 
@@ -23,6 +24,17 @@ TEST(SampleQuantile, AgreesWithNumPy) {
     EXPECT_NEAR(sample_quantile(entry.at("values"), entry.at("share")),
                 entry.at("quantile").get<double>(),
                 1e-12)
+        << entry;
+  }
+}
+
+TEST(ChiSquare, AgreesWithSciPy) {
+  const nlohmann::json cases = reference().at("chi_square");
+  ASSERT_EQ(cases.size(), 28U);
+  for (const auto& entry : cases) {
+    const auto expected = entry.at("quantile").get<double>();
+    EXPECT_NEAR(
+        chi_square_quantile(entry.at("share"), entry.at("degrees")), expected, 1e-10 * expected)
         << entry;
   }
 }

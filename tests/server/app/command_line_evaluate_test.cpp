@@ -69,6 +69,39 @@ TEST_F(CommandLine, EvaluateScoresTrajectoryFilesAndRejectsInvalidOnes) {
   EXPECT_THAT(broken.err, HasSubstr("broken.tum"));
 }
 
+TEST_F(CommandLine, EvaluateTellsTheDriftBetweenPositionFixes) {
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i <= 150; ++i) {  // 3 km, one percent too long
+    const std::string t = std::to_string(i);
+    truth += t + " " + std::to_string(20.0 * i) + " 0 300 0 0 0 1\n";
+    estimate += t + " " + std::to_string(20.2 * i) + " 0 300 0 0 0 1\n";
+  }
+  write_text(path("long_truth.tum"), truth);
+  write_text(path("long_estimate.tum"), estimate);
+  const std::vector<std::string> command = {"evaluate",
+                                            "--truth",
+                                            path("long_truth.tum"),
+                                            "--estimate",
+                                            path("long_estimate.tum"),
+                                            "--alignment",
+                                            "origin"};
+  const Outcome scored = overfly_program(command);
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  EXPECT_THAT(scored.out,
+              HasSubstr("with a position fix every 1 km: off by 10.000 m (median), 10.000 m "
+                        "(worst of 10)"));
+  EXPECT_THAT(scored.out, HasSubstr("with a position fix every 2 km: off by 20.000 m (median)"));
+  EXPECT_THAT(scored.out,
+              HasSubstr("with a position fix every 5 km: not known, the scored path is 3000 m"));
+  std::vector<std::string> as_json = command;
+  as_json.emplace_back("--json");
+  const Json origin =
+      Json::parse(overfly_program(as_json).out).at("estimates").at(0).at("alignments").at("origin");
+  EXPECT_NEAR(origin.at("fix_drift").at(0).at("worst_m").get<double>(), 10.0, 1e-9);
+  EXPECT_EQ(origin.at("fix_drift").at(2).at("unavailable"), "the scored path is 3000 m long");
+}
+
 TEST_F(CommandLine, EvaluateReportsErrorsByAxisAndTheOffsetOfAClock) {
   const auto weaving = [](double late_s, double up_m) {
     std::string text;

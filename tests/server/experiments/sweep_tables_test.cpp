@@ -32,6 +32,7 @@ struct Made {
   std::optional<double> rotation_deg;
   Outcome outcome = Outcome::kCompleted;
   std::string type = "process";
+  std::vector<double> nees = {};  ///< of the positions, if it states covariances
 };
 
 evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
@@ -41,6 +42,9 @@ evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, doubl
   score.position_rmse_hold_m = 2.0 * score.position_m.rmse;
   score.horizontal_rmse_m = 0.6 * score.position_m.rmse;
   score.vertical_rmse_m = 0.8 * score.position_m.rmse;
+  if (!made.nees.empty()) {
+    score.consistency.emplace().position = evaluation::nees_of(made.nees, 3);
+  }
   if (made.rotation_deg) {
     score.rotation_deg.emplace().rmse = *made.rotation_deg;
     score.rotation_euler_norm_deg.emplace().rmse = 1.5 * *made.rotation_deg;
@@ -145,6 +149,34 @@ TEST_F(SweepTablesTest, AnXEntersNoMedian) {
   EXPECT_DOUBLE_EQ(row.errors[1].horizontal_m->quartiles.median, 0.12);
   EXPECT_THAT(markdown(), HasSubstr("0.200 (2/3)"));
   EXPECT_THAT(markdown(), HasSubstr("2 COMPLETED, 1 NOT_INITIALISED"));
+}
+
+TEST_F(SweepTablesTest, MarksEstimatorsThatAreOverconfident) {
+  const std::vector<double> honest(50, 3.0);
+  const std::vector<double> boasting(50, 12.0);
+  const Outcome completed = Outcome::kCompleted;
+  add({"one", 50, 0, 1.0, 0.1, completed, "process", honest});
+  add({"one", 50, 1, 1.0, 0.1, completed, "process", boasting});
+  add({"one", 50, 2, 1.0, 0.1, completed, "process", boasting});
+  add({"two", 50, 0, 1.0, 0.1});
+  const SweepTables made = tables();
+  const CellHonesty& honesty = made.rows.at(0).errors[1].honesty;
+  EXPECT_EQ(honesty.flights, 3U);
+  EXPECT_EQ(honesty.overconfident, 2U);
+  EXPECT_EQ(honesty.too_cautious, 0U);
+  EXPECT_DOUBLE_EQ(honesty.deviation_ratio->quartiles.median, 2.0);
+  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 3 | 2 | 0 | 2.00 [1.50, 2.00] |\n"));
+  EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | 0 |")));
+  EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2\n"));
+  EXPECT_EQ(
+      json_from(made).at("rows").at(0).at("errors").at("sim3").at("honesty").at("overconfident"),
+      2);
+}
+
+TEST_F(SweepTablesTest, HasNoHonestyWithoutCovariances) {
+  add({"one", 50, 0, 1.0, 0.1});
+  EXPECT_THAT(markdown(), Not(HasSubstr("Honesty")));
+  EXPECT_THAT(csv_from(tables()), HasSubstr("COMPLETED:1,0,0,0,\n"));
 }
 
 TEST_F(SweepTablesTest, TiesAreHighlightedTogether) {

@@ -74,6 +74,36 @@ TEST(RowEncoder, LeavesPosesOutWhileNotTracking) {
   EXPECT_DOUBLE_EQ(columns["yaw_deg"][1], 3.0);
 }
 
+TEST(RowEncoder, HasTheHonestyOfAnEstimatorThatStatesCovariances) {
+  server::RunTimeline timeline({}, {"a"});
+  timeline.set_cameras({{"", PinholeCamera(), Pose()}});
+  server::FrameRow frame;
+  timeline.append_frame(frame);
+  server::EstimateRow row;
+  row.sample.state = TrackingState::kTracking;
+  row.T_world_body = Pose{Eigen::Quaterniond::Identity(), {3.0, 0.0, 0.0}};
+  row.scale = 1.0;
+  const auto nees_of_series = [&] {
+    int count = 0;
+    for (const auto& series : series_json(timeline)) count += series.at("group") == "nees" ? 1 : 0;
+    return count;
+  };
+  timeline.append_estimate(0, row);
+  EXPECT_FALSE(estimate_columns(timeline, 0, {row}).contains("nees_position"));
+  EXPECT_EQ(nees_of_series(), 0);
+  PoseCovariance covariance;
+  covariance.matrix.diagonal().head<3>() << 2.25, 1.0, 1.0;
+  row.sample.covariance = std::make_shared<const PoseCovariance>(covariance);
+  timeline.append_estimate(0, row);
+  server::EstimateRow without = row;
+  without.sample.covariance.reset();
+  const auto columns = estimate_columns(timeline, 0, {without, row});
+  EXPECT_EQ(columns.at("nees_position").dump(), "[null,4.0]");
+  EXPECT_NEAR(columns.at("nees_low")[1].get<double>(), 0.2158, 1e-4);
+  EXPECT_NEAR(columns.at("nees_high")[1].get<double>(), 9.3484, 1e-4);
+  EXPECT_EQ(nees_of_series(), 3);
+}
+
 TEST(SeriesList, TakesTheUnitOfACounterFromItsName) {
   server::RunTimeline timeline({}, {"a"});
   const std::map<std::string, double> counters = {

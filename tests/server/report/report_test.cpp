@@ -250,6 +250,42 @@ TEST_F(Report, ShowsOnlyTheScoredMap) {
   }
 }
 
+/// Of an estimator that claims to be a millimetre exact, and drifts.
+TEST_F(Report, MarksAnOverconfidentEstimator) {
+  const fs::path run = copy();
+  const auto lines = read_lines(estimate_file(run, "d"));
+  ASSERT_TRUE(lines.ok());
+  std::string rows;
+  for (Json row : *lines) {
+    if (row.contains("T_vo_camera")) row["covariance"] = {1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6};
+    rows += row.dump() + "\n";
+  }
+  write_text(estimate_file(run, "d"), rows);
+  const std::string html = made({run}).html;
+  EXPECT_THAT(html, HasSubstr("Honesty of the covariances that estimators state"));
+  EXPECT_THAT(html, HasSubstr("<td>overconfident"));
+  EXPECT_THAT(html, HasSubstr("It is overconfident: its errors of the position are "));
+  EXPECT_EQ(data_of(html)
+                .at("runs")
+                .at(0)
+                .at("metrics")
+                .at("estimators")
+                .at("d")
+                .at("alignments")
+                .at("init_scale")
+                .at("consistency")
+                .at("honesty"),
+            "overconfident");
+  EXPECT_THAT(made({run_folder()}).html, Not(HasSubstr("Honesty")));
+}
+
+TEST_F(Report, TellsWhyThereIsNoDriftBetweenFixes) {
+  const std::string html = made({run_folder()}).html;
+  EXPECT_THAT(html, HasSubstr("Drift between position fixes"));
+  EXPECT_THAT(html, HasSubstr("1, 2, 5"));
+  EXPECT_THAT(html, HasSubstr("X: the scored path is "));
+}
+
 TEST_F(Report, OfTheSameRunIsTheSameByteByByte) {
   EXPECT_EQ(made({run_folder()}).html, made({run_folder()}).html);
 }

@@ -62,6 +62,13 @@ RunMetrics full_metrics() {
   sim3.position_rmse_hold_m = 5.5;
   sim3.relative.push_back({100.0, 7, 1.125, 0.0625});
   sim3.notes = {"only the longest map"};
+  sim3.fix_drift = {{1000.0, 12, 3, 4.5, 9.25, 4.25, 9.0, ""},
+                    {2000.0, 0, 0, 0.0, 0.0, 0.0, 0.0, "the scored path is 1200 m long"}};
+  evaluation::Consistency& consistency = sim3.consistency.emplace();
+  consistency.position = evaluation::nees_of({12.0, 20.0, 4.0, 12.0}, 3);
+  consistency.pose = evaluation::nees_of({6.0, 5.5}, 6);
+  consistency.singular = 2;
+  score.covariances = {16, 2};
   score.alignments[AlignmentMode::kSim3] = sim3;
   evaluation::AlignmentScore& se3 = score.alignments[AlignmentMode::kSe3];
   se3.mode = AlignmentMode::kSe3;
@@ -87,6 +94,17 @@ TEST(RunMetricsJson, IsReadAsItWasWritten) {
   EXPECT_FALSE(document.at("cameras").at("tilted").contains("faults"));
   EXPECT_EQ(document.at("camera").at("late_frame_ranges"), Json::parse("[[1, 1], [3, 4]]"));
   EXPECT_FALSE(json_from(RunMetrics()).contains("cameras"));
+  const Json& estimator = document.at("estimators").at("f");
+  EXPECT_EQ(estimator.at("covariances"), Json::parse(R"({"stated": 16, "left_out": 2})"));
+  const Json& consistency = estimator.at("alignments").at("sim3").at("consistency");
+  EXPECT_EQ(consistency.at("honesty"), "overconfident");
+  EXPECT_EQ(consistency.at("position").at("deviation_ratio"), 2.0);
+  EXPECT_TRUE(consistency.at("rotation").is_null());
+  EXPECT_FALSE(document.at("estimators").at("p").contains("covariances"));
+  EXPECT_FALSE(estimator.at("alignments").at("se3").contains("consistency"));
+  EXPECT_EQ(estimator.at("alignments").at("sim3").at("fix_drift").at(1),
+            Json::parse(R"({"interval_m": 2000.0,
+                            "unavailable": "the scored path is 1200 m long"})"));
 }
 
 TEST(RunMetricsJson, NumbersThatJsonCannotRepresentAreNull) {
@@ -131,6 +149,10 @@ TEST(RunMetricsJson, InvalidFieldIsNamed) {
               HasSubstr("estimators.f.outcome = \"WON\": must be an outcome"));
   EXPECT_THAT(message([](Json& d) { d["estimators"]["f"]["alignments"]["sim3"]["matched"] = "x"; }),
               HasSubstr("estimators.f.alignments.sim3.matched"));
+  EXPECT_THAT(message([](Json& d) {
+                d["estimators"]["f"]["alignments"]["sim3"]["consistency"]["pose"]["honesty"] = "so";
+              }),
+              HasSubstr("consistency.pose.honesty = \"so\": must be consistent"));
   EXPECT_THAT(message([](Json& d) { d.erase("estimators"); }), HasSubstr("estimators: is missing"));
   EXPECT_THAT(message([](Json& d) { d = Json::array(); }), HasSubstr("must be an object"));
 

@@ -56,6 +56,27 @@ TEST(EstimateErrors, AreSplitByTheDirectionOfTheTrueMotion) {
   EXPECT_FALSE(errors[2]) << "frame 11 is not recorded";
 }
 
+/// The estimator's frame is turned and in units of 50 m: its covariance is too.
+TEST(EstimateErrors, AreComparedWithTheStatedCovariance) {
+  const auto flight = straight_flight();
+  Pose off = flight->frames(4, 1).front().T_world_body;
+  off.translation += Eigen::Vector3d(4.0, 0.0, -1.0);
+  EstimateRow row = estimate_at(8, off);
+  row.scale = 50.0;
+  const Eigen::Quaterniond R_world_vo(Eigen::AngleAxisd(0.5 * kPi, Eigen::Vector3d::UnitZ()));
+  row.sample.T_vo_camera.rotation = R_world_vo.conjugate() * off.rotation;
+  PoseCovariance covariance;
+  covariance.has_rotation = false;
+  // In the world: 3 m along y (north), 2 m along x, 0.5 m along z.
+  covariance.matrix.diagonal().head<3>() << 9.0 / 2500.0, 4.0 / 2500.0, 0.25 / 2500.0;
+  row.sample.covariance = std::make_shared<const PoseCovariance>(covariance);
+  const auto errors = errors_of(*flight, 0, {row, estimate_at(8, off)}, RowAlignment());
+  ASSERT_TRUE(errors[0] && errors[0]->position_nees);
+  EXPECT_NEAR(*errors[0]->position_nees, 4.0 + 4.0, 1e-9);
+  ASSERT_TRUE(errors[1]);
+  EXPECT_FALSE(errors[1]->position_nees);
+}
+
 /// Slower than 1 m/s the nose (to the east here) gives the direction.
 TEST(EstimateErrors, AreInTheAxesOfTheNoseWithoutMotion) {
   const auto flight = straight_flight(0.5);

@@ -181,6 +181,36 @@ TEST(ProcessMessages, LeaveOutFiguresThatAreNotFiniteAndNoteTheFirst) {
   EXPECT_TRUE(figures.take_notes().empty()) << "it is said once";
 }
 
+TEST(ProcessMessages, CarryTheCovarianceThatTheClientStates) {
+  overfly_vo::Answer answer;
+  answer.state = overfly_vo::State::kTracking;
+  answer.counters = {{"features", 90.0}};
+  for (int i = 0; i < 36; ++i) answer.covariance.push_back(i % 7 == 0 ? 1.0 / 3.0 : -1e-7 * i);
+  std::string not_finite;
+  const std::string payload = overfly_vo::detail::payload_of(answer, 7, 0xB63CFBCD, &not_finite);
+  FigureIntake figures;
+  const Result<VoEstimate> estimate = answer_from(payload, small_frame(), &figures);
+  ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+  EXPECT_EQ(estimate->covariance, answer.covariance) << "as stated: PoseIntake judges it";
+  EXPECT_EQ(estimate->counters, answer.counters);
+}
+
+TEST(ProcessMessages, TakeNumbersAsACovarianceAndNothingElse) {
+  const auto with = [](const std::string& line) {
+    FigureIntake figures;
+    return answer_from(payload_of_document("answer") + line, small_frame(), &figures);
+  };
+  EXPECT_TRUE(with("").value().covariance.empty());
+  const Result<VoEstimate> odd = with("covariance 1 nan 1e999\n");
+  ASSERT_TRUE(odd.ok()) << odd.error().message;
+  ASSERT_EQ(odd->covariance.size(), 3U);
+  EXPECT_TRUE(std::isnan(odd->covariance[1]));
+  EXPECT_TRUE(std::isinf(odd->covariance[2]));
+  EXPECT_THAT(with("covariance 1 x2 3\n").error().message,
+              HasSubstr("'covariance' has 'x2': must be numbers"));
+  EXPECT_THAT(with("covariance 1  3\n").error().message, HasSubstr("has ''"));
+}
+
 TEST(ProcessMessages, PassOverThePoseOfALostFrame) {
   const std::string lost = answer_with(8, u32(2)).replace(24, 8, f64(1e300 * 1e300));
   FigureIntake figures;

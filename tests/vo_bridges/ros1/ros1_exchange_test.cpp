@@ -78,6 +78,62 @@ TEST(Ros1Exchange, TurnsBodyAxesIntoOpticalOnes) {
   for (const VoFrame& frame : grey_frames(3)) expect_proof(tracked(*port, frame), frame);
 }
 
+/// As the test node states it.
+Matrix6d stated_covariance() {
+  Matrix6d P = Matrix6d::Zero();
+  for (int i = 0; i < 6; ++i) P(i, i) = 0.25 * (i + 1);
+  P(0, 1) = P(1, 0) = 0.125;
+  return P;
+}
+
+TEST(Ros1Exchange, CarriesTheCovariance) {
+  ROS_MASTER_OR_SKIP();
+  for (const Ros1PoseType type :
+       {Ros1PoseType::kPoseWithCovarianceStamped, Ros1PoseType::kOdometry}) {
+    Ros1EstimatorOptions options = fresh_options();
+    options.pose_type = type;
+    options.pose_in_body_axes = true;  // of the camera: the covariance is in the parent's
+    const TestNode node(options, {"body_axes=1", "covariance=1"});
+    const auto port = created(options);
+    for (const VoFrame& frame : grey_frames(3)) {
+      const VoEstimate estimate = tracked(*port, frame);
+      ASSERT_NE(estimate.sample.covariance, nullptr);
+      EXPECT_EQ(estimate.sample.covariance->matrix, stated_covariance());
+    }
+  }
+}
+
+TEST(Ros1Exchange, InvertsTheCovarianceWithThePose) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.pose_type = Ros1PoseType::kOdometry;
+  options.pose_is_camera_from_world = true;
+  const TestNode node(options, {"invert=1", "covariance=1"});
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(2)) {
+    const VoEstimate estimate = tracked(*port, frame);
+    ASSERT_NE(estimate.sample.covariance, nullptr);
+    const Matrix6d expected =
+        inverted_covariance(estimate.sample.T_vo_camera.inverse(), stated_covariance());
+    EXPECT_TRUE(estimate.sample.covariance->matrix.isApprox(expected, 1e-9));
+  }
+}
+
+TEST(Ros1Exchange, KeepsThePoseOfAnInvalidCovariance) {
+  ROS_MASTER_OR_SKIP();
+  Ros1EstimatorOptions options = fresh_options();
+  options.pose_type = Ros1PoseType::kPoseWithCovarianceStamped;
+  const TestNode node(options, {"covariance=2"});
+  const auto port = created(options);
+  for (const VoFrame& frame : grey_frames(2)) {
+    const VoEstimate estimate = tracked(*port, frame);
+    expect_proof(estimate, frame);
+    EXPECT_EQ(estimate.sample.covariance, nullptr);
+    EXPECT_TRUE(estimate.sample.covariance_left_out);
+  }
+  EXPECT_TRUE(logs(*port, "covariance: values (4, 1) = 0.0"));
+}
+
 TEST(Ros1Exchange, PublishesSamplesOfSensors) {
   ROS_MASTER_OR_SKIP();
   Ros1EstimatorOptions options = fresh_options();

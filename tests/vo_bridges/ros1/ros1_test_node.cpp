@@ -3,7 +3,8 @@
 // hundredths of a radian about x.
 //   ros1_test_node image=TOPIC info=TOPIC pose=TOPIC type=TYPE [debug=TOPIC]
 //     [parent=FRAME child=FRAME] [invert=1] [body_axes=1] [delay_ms=N] [silent_until=N] [every=N]
-//     [wait_for_info=1] [stamp_off_s=N] [bad_pose=1] [debug_encoding=NAME] [debug_scale=N]
+//     [wait_for_info=1] [stamp_off_s=N] [bad_pose=1]
+//     [covariance=1 (stated) or 2 (not symmetric)] [debug_encoding=NAME] [debug_scale=N]
 #include <ros/callback_queue.h>
 #include <ros/init.h>
 #include <ros/node_handle.h>
@@ -177,6 +178,13 @@ class Estimator {
     M message;
     message.header.stamp = stamp;
     message.pose.pose = pose_message_from(pose);
+    if (number("covariance") != 0) {
+      for (std::size_t i = 0; i < 6; ++i) {
+        message.pose.covariance[7 * i] = 0.25 * static_cast<double>(i + 1);
+      }
+      message.pose.covariance[1] = message.pose.covariance[6] = 0.125;
+    }
+    if (number("covariance") == 2) message.pose.covariance[3] = 0.5;
     poses_.publish(message);
   }
 

@@ -1,4 +1,5 @@
 // Decodes an estimator's messages and checks every field.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -35,9 +36,30 @@ void read_pose(ByteReader* reader, EstimateSample* sample) {
   if (depth != 0.0) sample->scene_depth = depth;
 }
 
-/// Parses "counter NAME VALUE" and "timing_ms NAME VALUE".
+/// Parses "covariance VALUE ...": PoseIntake checks the values and their number.
+Status read_covariance(std::string_view text, VoEstimate* estimate) {
+  estimate->covariance.clear();
+  while (!text.empty()) {
+    const std::string_view digits = text.substr(0, text.find(' '));
+    double number = 0.0;
+    const auto [end, failure] = std::from_chars(digits.begin(), digits.end(), number);
+    const bool too_large = failure == std::errc::result_out_of_range;
+    if ((failure != std::errc{} && !too_large) || end != digits.end()) {
+      return bad_reply("'covariance' has '" + printable(digits, 80) +
+                       "': must be numbers, separated by one space each");
+    }
+    estimate->covariance.push_back(too_large ? std::numeric_limits<double>::infinity() : number);
+    text.remove_prefix(std::min(text.size(), digits.size() + 1));
+  }
+  return {};
+}
+
+/// Parses "counter NAME VALUE", "timing_ms NAME VALUE" and "covariance VALUE ...".
 Status read_figures(std::string_view text, FigureIntake* figures, VoEstimate* estimate) {
   for (const auto& [key, value] : lines_of(text)) {
+    if (key == "covariance") {
+      if (Status status = read_covariance(value, estimate); !status) return status;
+    }
     const bool counter = key == "counter";
     if (!counter && key != "timing_ms") continue;
     const std::size_t space = value.find(' ');
