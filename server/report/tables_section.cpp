@@ -176,7 +176,7 @@ void add_fix_drift_rows(const std::string& name,
   std::string missing;
   std::string reason;
   for (const evaluation::FixDrift& drift : drifts) {
-    const std::string interval = figure_text(1e-3 * drift.interval_m);
+    const std::string interval = number_text(1e-3 * drift.interval_m);
     if (!drift.unavailable.empty()) {
       missing += (missing.empty() ? "" : ", ") + interval;
       reason = drift.unavailable;
