@@ -67,7 +67,7 @@ class Gate final : public VoPort {
   std::vector<std::string> said_;
 };
 
-VoFrame frame_of(std::int64_t index) {
+VoFrame waiting_frame(std::int64_t index) {
   VoFrame frame;
   frame.index = index;
   frame.t_ns = index * 1'000'000;
@@ -92,9 +92,9 @@ std::vector<std::int64_t> frames_of(const std::vector<EstimatorEvent>& events, b
 TEST(WorkerQueue, FramesAheadAreAnsweredInOrderAndNoneIsDropped) {
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(3), machine_clock());
-  worker.submit(frame_of(0));
+  worker.submit(waiting_frame(0));
   gate.wait_until_begun(0);
-  for (int k = 1; k <= 4; ++k) worker.submit(frame_of(k));
+  for (int k = 1; k <= 4; ++k) worker.submit(waiting_frame(k));
   gate.release(4);
   worker.wait_until_idle();
   const std::vector<EstimatorEvent> events = worker.take_events();
@@ -105,9 +105,9 @@ TEST(WorkerQueue, FramesAheadAreAnsweredInOrderAndNoneIsDropped) {
 TEST(WorkerQueue, BeyondItsPlacesTheNewestWaitingFrameIsDropped) {
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(1), machine_clock());
-  worker.submit(frame_of(0));
+  worker.submit(waiting_frame(0));
   gate.wait_until_begun(0);
-  for (int k = 1; k <= 4; ++k) worker.submit(frame_of(k));
+  for (int k = 1; k <= 4; ++k) worker.submit(waiting_frame(k));
   gate.release(4);
   worker.wait_until_idle();
   const std::vector<EstimatorEvent> events = worker.take_events();
@@ -118,7 +118,7 @@ TEST(WorkerQueue, BeyondItsPlacesTheNewestWaitingFrameIsDropped) {
 TEST(WorkerQueue, AnswersAreTakenUpToAFrameHoweverFarTheEstimatorIs) {
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(4), machine_clock());
-  for (int k = 0; k <= 4; ++k) worker.submit(frame_of(k));
+  for (int k = 0; k <= 4; ++k) worker.submit(waiting_frame(k));
   gate.wait_until_begun(0);
   EXPECT_FALSE(worker.answered(0));
   EXPECT_THAT(worker.take_events(0), IsEmpty());
@@ -137,11 +137,11 @@ TEST(WorkerQueue, AnswersAreTakenUpToAFrameHoweverFarTheEstimatorIs) {
 TEST(WorkerQueue, LogLinesComeWithTheFrameTheyAreAbout) {
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(3), machine_clock());
-  worker.prepare(frame_of(0));
+  worker.prepare(waiting_frame(0));
   worker.wait_until_idle();
   EXPECT_THAT(worker.take_log(), ElementsAre("ready"));
   gate.release(1);
-  for (int k = 0; k <= 2; ++k) worker.submit(frame_of(k));
+  for (int k = 0; k <= 2; ++k) worker.submit(waiting_frame(k));
   gate.wait_until_begun(2);
   EXPECT_THAT(worker.take_log(), IsEmpty()) << "frame 2 is in progress";
   const std::vector<EstimatorEvent> events = worker.take_events(1);
@@ -157,14 +157,14 @@ TEST(WorkerQueue, LogLinesComeWithTheFrameTheyAreAbout) {
 TEST(WorkerQueue, ForgottenFramesAreNeitherTrackedNorReported) {
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(4), machine_clock());
-  for (int k = 0; k <= 4; ++k) worker.submit(frame_of(k));
+  for (int k = 0; k <= 4; ++k) worker.submit(waiting_frame(k));
   gate.wait_until_begun(0);
   worker.forget_after(1);
   gate.release(4);
   worker.wait_until_idle();
   EXPECT_THAT(frames_of(worker.take_events(), false), ElementsAre(0, 1));
   worker.forget_after(-1);
-  worker.submit(frame_of(2));
+  worker.submit(waiting_frame(2));
   worker.wait_until_answered(2);
   EXPECT_THAT(frames_of(worker.take_events(), false), ElementsAre(2));
 }
@@ -174,7 +174,7 @@ TEST(WorkerQueue, FramesBehindACrashAreLost) {
   gate.throws_at = 1;
   EstimatorWorker worker(std::make_unique<Gate>(gate), ahead(4), machine_clock());
   gate.release(1);
-  for (int k = 0; k <= 3; ++k) worker.submit(frame_of(k));
+  for (int k = 0; k <= 3; ++k) worker.submit(waiting_frame(k));
   worker.wait_until_idle();
   const std::vector<EstimatorEvent> events = worker.take_events();
   ASSERT_THAT(frames_of(events, false), ElementsAre(0, 1, 2, 3));
@@ -222,9 +222,9 @@ std::vector<double> latencies(std::size_t frames_ahead, int frames) {
   WorkClock clock;
   Gate::Shared gate;
   EstimatorWorker worker(std::make_unique<Tens>(clock, gate), ahead(frames_ahead), clock);
-  worker.submit(frame_of(0));
+  worker.submit(waiting_frame(0));
   gate.wait_until_begun(0);
-  for (int k = 1; k < frames; ++k) worker.submit(frame_of(k));
+  for (int k = 1; k < frames; ++k) worker.submit(waiting_frame(k));
   gate.release(frames);
   worker.wait_until_idle();
   std::vector<double> latencies_ms;

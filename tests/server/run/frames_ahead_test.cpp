@@ -23,7 +23,7 @@ namespace {
 using overfly::testing::TemporaryFolder;
 using testing::small_scenario;
 
-constexpr const char* kTwo =
+constexpr const char* kTwoSlow =
     R"(estimators=[{"name":"a","type":"feature"},{"name":"b","type":"feature"}])";
 
 /// Counts the images, and fails at one of them.
@@ -99,11 +99,11 @@ TEST(FramesAhead, AreLimitedByNumberAndMemory) {
     overrides.push_back(std::string("cameras=[{\"name\":\"a\",") + camera + "}]");
     return lockstep_frames_ahead(small_scenario(overrides));
   };
-  EXPECT_EQ(of({kTwo}, R"("width_px":1280,"height_px":960)"), kMostFramesAhead);
-  EXPECT_EQ(of({kTwo}, R"("width_px":4096,"height_px":4096)"), 2U);
-  EXPECT_EQ(of({kTwo}, R"("width_px":8192,"height_px":8192)"), 0U);
-  EXPECT_EQ(of({kTwo}, R"("width_px":2048,"height_px":2048,"color":"rgb")"), 2U);
-  EXPECT_EQ(of({kTwo, "pacing=real_time"}, R"("width_px":1280,"height_px":960)"), 0U);
+  EXPECT_EQ(of({kTwoSlow}, R"("width_px":1280,"height_px":960)"), kMostFramesAhead);
+  EXPECT_EQ(of({kTwoSlow}, R"("width_px":4096,"height_px":4096)"), 2U);
+  EXPECT_EQ(of({kTwoSlow}, R"("width_px":8192,"height_px":8192)"), 0U);
+  EXPECT_EQ(of({kTwoSlow}, R"("width_px":2048,"height_px":2048,"color":"rgb")"), 2U);
+  EXPECT_EQ(of({kTwoSlow, "pacing=real_time"}, R"("width_px":1280,"height_px":960)"), 0U);
   EXPECT_EQ(of({}, R"("width_px":1280,"height_px":960)"), 0U) << "nobody to wait for";
 }
 
@@ -111,7 +111,7 @@ TEST(FramesAhead, AreLimitedByNumberAndMemory) {
 TEST(FramesAhead, AreMadeWhileAnEstimatorWorksUpToTheLimit) {
   Flight flight;
   // The frame in progress, those that wait, and one whose record waits for an answer.
-  const int most = 2 + static_cast<int>(lockstep_frames_ahead(small_scenario({kTwo})));
+  const int most = 2 + static_cast<int>(lockstep_frames_ahead(small_scenario({kTwoSlow})));
   int made = 0;
   flight.before["b"] = [&](std::int64_t frame) {
     if (frame != 0) return;
@@ -121,7 +121,7 @@ TEST(FramesAhead, AreMadeWhileAnEstimatorWorksUpToTheLimit) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     made = flight.drawn.images;
   };
-  const auto run = run_scenario(small_scenario({kTwo}), flight.options);
+  const auto run = run_scenario(small_scenario({kTwoSlow}), flight.options);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(made, most);
   EXPECT_EQ(run->info.frames, 21);
@@ -130,7 +130,7 @@ TEST(FramesAhead, AreMadeWhileAnEstimatorWorksUpToTheLimit) {
 /// However long the estimators take, the files are those of a flight without any waiting.
 TEST(FramesAhead, DoNotChangeTheRecord) {
   const std::vector<std::string> overrides = {
-      kTwo,
+      kTwoSlow,
       R"(faults=[{"kind":"dropped_frames","at_s":0.35,"duration_s":0.2},{"kind":"frozen_frame","at_s":0.95,"duration_s":0.3}])",
       R"(sensors={"imu":{"rate_hz":50}})",
       "recording.frames=true"};
@@ -161,7 +161,7 @@ TEST(FramesAhead, AFrameThatCannotBeMadeEndsTheFlightAfterTheFramesBeforeIt) {
     flight.before["a"] = [](std::int64_t) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     };
-    const auto run = run_scenario(small_scenario({kTwo}), flight.options);
+    const auto run = run_scenario(small_scenario({kTwoSlow}), flight.options);
     ASSERT_FALSE(run.ok());
     EXPECT_THAT(run.error().message,
                 ::testing::HasSubstr(throws ? "a library's fault" : "the disk is gone"));
@@ -185,7 +185,7 @@ TEST(FramesAhead, CancelEndsTheRecordWithTheAnswersToItsLastFrame) {
   flight.options.progress = [&](const RunInfo& info) {
     if (info.frames == 5) flight.cancel = true;
   };
-  const auto run = run_scenario(small_scenario({kTwo}), flight.options);
+  const auto run = run_scenario(small_scenario({kTwoSlow}), flight.options);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(run->info.status, RunStatus::kCancelled);
   EXPECT_EQ(run->info.frames, 5);
