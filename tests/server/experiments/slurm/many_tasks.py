@@ -42,7 +42,7 @@ def disturb(slurm: cluster.Cluster, sweep: slurm_test.Sweep, chance: random.Rand
 
 def fly(overfly: str, folder: pathlib.Path, slurm: cluster.Cluster, options) -> None:
     speeds = [round(10 + 0.02 * i, 2) for i in range(options.flights)]
-    file = slurm_test.sweep_file(folder, speeds, 1)
+    file = slurm_test.sweep_file(folder, speeds, 2)
     sweep = slurm_test.Sweep(overfly, file, folder / "by_slurm", jobs=options.flights)
     start = time.monotonic()
     chance, done = random.Random(1), {}
