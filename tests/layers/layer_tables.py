@@ -231,6 +231,8 @@ MAY_INCLUDE = {
                                   "server/scenario/estimator_spec.hpp", "server/scoring/",
                                   "server/report/plot", "server/experiments"],
     "server/experiments/envelope": ["core/", "evaluation", "server/experiments"],
+    "server/experiments/hunt": ["core/", "evaluation", "server/files/", "server/scenario/",
+                                "server/record/", "server/scoring/", "server/experiments"],
     "server/experiments/jobs": ["core/", "server/files/", "server/runs/run_memory.hpp",
                                 "server/experiments"],
     "server/experiments/service": ["core/", "evaluation", "server/files/", "server/scenario/",
@@ -273,6 +275,7 @@ THIRD_PARTY = [
     (r"opencv2/\w+/\w+_c\.h$", ["vo_bridges/adapters"], False),
     (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry", "evaluation/images", "calibration/detection"], False),
     (r"ceres/", ["odometry", "flight/smoothing"], False),
+    (r"nlopt", ["server/experiments/hunt"], False),
     (r"boost/", ["server/net"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/files"], False),
@@ -295,7 +298,8 @@ CALLS = [
     # Text in the program itself needs no guard; everything else may come from outside.
     (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
      ["core/outside/outside_json.hpp", "server/scenario/document/scenario_schema.cpp",
-      "server/camera/camera_check.cpp", "server/experiments/sweep_document.cpp"],
+      "server/camera/camera_check.cpp", "server/experiments/sweep_document.cpp",
+      "server/experiments/hunt/hunt_document.cpp"],
      "json_from_outside"),
     # It lets read errors out as exceptions, waits for FIFOs and knows no limit.
     (r"istreambuf_iterator", [], "read_file_text or read_file_bytes"),
