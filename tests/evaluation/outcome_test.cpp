@@ -229,9 +229,7 @@ TEST_F(OutcomeTest, AChangeBelowTwoIsNoDivergence) {
 }
 
 TEST_F(OutcomeTest, TheChangeOfScaleIsThatOfItsWindows) {
-  const auto change = [&] {
-    return scale_change(associate(truth_, track_, {}).value()).value();
-  };
+  const auto change = [&] { return scale_change(associate(truth_, track_, {}).value()).value(); };
   EXPECT_NEAR(change(), 1.0, 1e-6);
   change_scale(&track_, 0.6);
   EXPECT_NEAR(change(), 1.0 / 0.6, 1e-3);

@@ -89,7 +89,8 @@ std::string progress_text(const experiments::Hunt& hunt, const experiments::Hunt
          (worst == nullptr ? "" : "; the worst one " + experiments::result_text(*worst));
 }
 
-Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt, const HuntArguments& arguments) {
+Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
+                                         const HuntArguments& arguments) {
   ProgressDisplay display(arguments.quiet);
   experiments::HuntOptions options;
   options.flights.folder = fs::absolute(arguments.out);
@@ -148,8 +149,7 @@ void add_hunt_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("hunt", "Search the worst flight of a scenario within limits");
   command->add_option("scenario", arguments->file, "Scenario or hunt file (JSON)")->required();
-  command
-      ->add_option("--out", arguments->out, "Folder of the hunt; one that exists is continued")
+  command->add_option("--out", arguments->out, "Folder of the hunt; one that exists is continued")
       ->required();
   command
       ->add_option("--axis",

@@ -51,11 +51,10 @@ double GaussianProcess::condition(const Eigen::VectorXd& parameters) {
   const Eigen::VectorXd values = lower.solve(values_);
   mean_ = ones_.dot(values) / ones_.squaredNorm();
   const Eigen::VectorXd rest = values - mean_ * ones_;
-  weights_ = lower.transpose().solve(rest);
+  weights_ = factor_.transpose().triangularView<Eigen::Upper>().solve(rest);
   const double known = kKnownValues + static_cast<double>(count);
   variance_ = (rest.squaredNorm() + kKnownValues) / known;
-  double surprise =
-      known * std::log(variance_) + 2.0 * factor_.diagonal().array().log().sum();
+  double surprise = known * std::log(variance_) + 2.0 * factor_.diagonal().array().log().sum();
   for (Eigen::Index axis = 0; axis <= axes; ++axis) {
     const Prior& prior = axis < axes ? kLength : kNoise;
     surprise += std::pow((parameters(axis) - std::log(prior.mode)) / prior.deviation, 2);
@@ -76,8 +75,7 @@ GaussianProcess GaussianProcess::fit(const Eigen::MatrixXd& points, const Eigen:
     Eigen::VectorXd parameters(axes + 1);
     for (Eigen::Index axis = 0; axis <= axes; ++axis) {
       const Prior& prior = axis < axes ? kLength : kNoise;
-      parameters(axis) =
-          std::log(prior.mode) + kRange * prior.deviation * (2.0 * unit(axis) - 1.0);
+      parameters(axis) = std::log(prior.mode) + kRange * prior.deviation * (2.0 * unit(axis) - 1.0);
     }
     return parameters;
   };

@@ -66,7 +66,11 @@ class Hunter {
       const Result<FlightEvidence> evidence =
           read_evidence(options_.flights.folder / flight->run, hunt_.estimator);
       if (!evidence) return evidence.error();
-      HuntedFlight hunted{flown_cell, flight->repeat, flight->seed, flight->run, flight->outcome,
+      HuntedFlight hunted{flown_cell,
+                          flight->repeat,
+                          flight->seed,
+                          flight->run,
+                          flight->outcome,
                           margin_of(*evidence, hunt_.rule)};
       lowest = std::min(lowest, hunted.margin.value);
       result_.flights.push_back(std::move(hunted));

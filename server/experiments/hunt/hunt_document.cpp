@@ -90,7 +90,8 @@ double value_between(const std::pair<double, double>& range, double share) {
 }  // namespace
 
 Result<Json> parse_axis(const std::string& text) {
-  const Error wrong = invalid_hunt("--axis " + text + ": must be PATH=FROM:TO or PATH=FROM:TO:STEP");
+  const Error wrong =
+      invalid_hunt("--axis " + text + ": must be PATH=FROM:TO or PATH=FROM:TO:STEP");
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return wrong;
   std::vector<double> numbers;
@@ -114,9 +115,8 @@ Result<Json> read_hunt_document(const fs::path& file) {
     return Error{ErrorCode::kUnreadable, file.string() + ": is no JSON object"};
   }
   if (document->contains("axes")) return document;
-  Json hunt = {{"format_version", 1},
-               {"scenario", file.filename().string()},
-               {"axes", Json::array()}};
+  Json hunt = {
+      {"format_version", 1}, {"scenario", file.filename().string()}, {"axes", Json::array()}};
   if (document->contains("title")) hunt["title"] = document->at("title");
   return hunt;
 }
@@ -133,8 +133,7 @@ Result<Hunt> resolve_hunt(Json document, const fs::path& folder, const std::stri
 
   Hunt hunt;
   hunt.sweep = std::move(*sweep);
-  hunt.method =
-      document.at("method") == "random" ? SearchMethod::kRandom : SearchMethod::kModel;
+  hunt.method = document.at("method") == "random" ? SearchMethod::kRandom : SearchMethod::kModel;
   hunt.stop_at_failure = document.at("until") == "failure";
   hunt.most_flights = document.at("most_flights").get<std::size_t>();
   hunt.batch = document.at("batch").get<std::size_t>();

@@ -108,7 +108,7 @@ Point PointSearch::unknown_point() {
 
 std::vector<Point> PointSearch::start_points() {
   constexpr int kDraws = 50;
-  const std::size_t count = axes_.size() + 2;
+  const std::size_t count = std::max<std::size_t>(3, axes_.size());
   std::vector<Point> best;
   double best_distance = -1.0;
   for (int draw = 0; draw < kDraws; ++draw) {
@@ -125,7 +125,8 @@ std::vector<Point> PointSearch::start_points() {
 GaussianProcess PointSearch::model_of(std::size_t count, const std::vector<double>& values) const {
   Eigen::MatrixXd points(static_cast<Eigen::Index>(axes_.size()), static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) points.col(static_cast<Eigen::Index>(i)) = points_[i];
-  return GaussianProcess::fit(points, Eigen::Map<const Eigen::VectorXd>(values.data(), points.cols()));
+  return GaussianProcess::fit(points,
+                              Eigen::Map<const Eigen::VectorXd>(values.data(), points.cols()));
 }
 
 Point PointSearch::most_promising() const {

@@ -57,7 +57,7 @@ class PointSearch {
   std::vector<SearchAxis> axes_;
   SearchMethod method_;
   std::mt19937_64 random_;
-  std::vector<Eigen::VectorXd> start_;  ///< to be proposed first, the last one first
+  std::vector<Eigen::VectorXd> start_;   ///< to be proposed first, the last one first
   std::vector<Eigen::VectorXd> points_;  ///< proposed ones
   std::vector<double> values_;           ///< told ones, of the first points
 };

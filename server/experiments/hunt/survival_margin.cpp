@@ -64,7 +64,8 @@ std::vector<MarginFactor> factors_of(const FlightEvidence& evidence, const Margi
   };
   add("tracked", (evidence.tracked_share - kTrackedLimit) / (1.0 - kTrackedLimit));
   add("start",
-      1.0 - evidence.score.initialised_at_s.value_or(0.0) / latest_allowed_start_s(evidence.duration_s));
+      1.0 - evidence.score.initialised_at_s.value_or(0.0) /
+                latest_allowed_start_s(evidence.duration_s));
   if (const auto& points = evidence.lowest_points) add("points", *points / (*points + kHalfPoints));
   if (const auto& change = evidence.scale_change) {
     add("scale", 1.0 - std::log(*change) / std::log(kScaleLimit));

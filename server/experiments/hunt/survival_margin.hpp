@@ -33,7 +33,7 @@ struct FlightEvidence {
 
 /// One reason why the margin of a flight that succeeded is smaller than 1.
 struct MarginFactor {
-  std::string name;  ///< "tracked", "start", "points", "scale", "position"
+  std::string name;    ///< "tracked", "start", "points", "scale", "position"
   double share = 1.0;  ///< in [0, 1]; 0: at the limit of failing
 };
 

@@ -22,8 +22,8 @@ using Json = nlohmann::json;
 
 class HuntCommand : public CommandLine {
  protected:
-  /// The drifting estimator's error is its drift times the distance flown: 1.4 m RMSE at most, which
-  /// only the fastest flights with the largest drift reach.
+  /// The drifting estimator's error is its drift times the distance flown: 1.4 m RMSE at most,
+  /// which only the fastest flights with the largest drift reach.
   static std::vector<std::string> arguments(const std::string& out,
                                             const std::vector<std::string>& more = {}) {
     std::vector<std::string> words{"hunt",
@@ -103,9 +103,16 @@ TEST_F(HuntCommand, ReadsAHuntFileWhoseFieldsOptionsReplace) {
   write_text(path("hunt.json"),
              R"({"format_version": 1, "scenario": "small.json", "title": "Small", "most_flights": 9,
                  "axes": [{"path": "flight.course.airspeed_m_s", "values": [15, 20, 25]}]})");
-  const Outcome hunt = overfly_program(
-      {"hunt", path("hunt.json"), "--out", path("h3"), "--flights", "2", "--method", "random",
-       "--seed", "4"});
+  const Outcome hunt = overfly_program({"hunt",
+                                        path("hunt.json"),
+                                        "--out",
+                                        path("h3"),
+                                        "--flights",
+                                        "2",
+                                        "--method",
+                                        "random",
+                                        "--seed",
+                                        "4"});
   ASSERT_EQ(hunt.exit_code, 0) << hunt.err;
   EXPECT_THAT(hunt.out, HasSubstr("Estimator perfect survives all of 2 flights"));
   const Json found = hunt_of("h3");

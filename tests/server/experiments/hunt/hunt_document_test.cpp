@@ -89,8 +89,8 @@ TEST(HuntDocument, GivesEachPointItsFlight) {
 
 TEST(HuntDocument, TakesOneEstimatorOfTheScenario) {
   Json json = document();
-  json["set"] = {{"estimators",
-                  {{{"name", "a"}, {"type", "perfect"}}, {{"name", "b"}, {"type", "feature"}}}}};
+  json["set"] = {
+      {"estimators", {{{"name", "a"}, {"type", "perfect"}}, {{"name", "b"}, {"type", "feature"}}}}};
   EXPECT_EQ(resolve(json).value().estimator, "a");
   const Hunt hunt = resolve(json, "b").value();
   const Scenario scenario = scenario_of(hunt.sweep, cell_at(hunt, {{0.5, 0.5}}), 0).value();

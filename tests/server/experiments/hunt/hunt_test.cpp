@@ -51,13 +51,14 @@ class FlyHunt : public ::testing::Test {
   }
 
   Result<HuntResult> fly(const Hunt& hunt, double fails_above_m_s, std::size_t jobs = 1) {
-    write_text(program(),
-               "#!/bin/sh\nset -e\necho \"$2\" >> '" + calls().string() + "'\n" + before_ +
-                   "\nspeed=$(sed -n 's/.*\"airspeed_m_s\": \\([0-9.]*\\).*/\\1/p' \"$2\" | head -1)\n"
-                   "if [ \"$(echo \"$speed\" | awk '{print ($1 > " +
-                   std::to_string(fails_above_m_s) +
-                   ")}')\" = 1 ]; then from=failed; else from=completed; fi\ncp -r '" +
-                   shared_->path().string() + "'/$from \"$4\"\n");
+    write_text(
+        program(),
+        "#!/bin/sh\nset -e\necho \"$2\" >> '" + calls().string() + "'\n" + before_ +
+            "\nspeed=$(sed -n 's/.*\"airspeed_m_s\": \\([0-9.]*\\).*/\\1/p' \"$2\" | head -1)\n"
+            "if [ \"$(echo \"$speed\" | awk '{print ($1 > " +
+            std::to_string(fails_above_m_s) +
+            ")}')\" = 1 ]; then from=failed; else from=completed; fi\ncp -r '" +
+            shared_->path().string() + "'/$from \"$4\"\n");
     fs::permissions(program(), fs::perms::owner_all);
     HuntOptions options;
     options.flights.folder = folder();
@@ -136,10 +137,9 @@ TEST_F(FlyHunt, SaysWhenNothingFails) {
 }
 
 TEST_F(FlyHunt, EndsWhenEveryPointWasFlown) {
-  const auto result = fly(hunt({{"axes",
-                                 {{{"path", "flight.course.airspeed_m_s"},
-                                   {"values", {10, 15, 20}}}}}}),
-                          100.0);
+  const auto result =
+      fly(hunt({{"axes", {{{"path", "flight.course.airspeed_m_s"}, {"values", {10, 15, 20}}}}}}),
+          100.0);
   ASSERT_TRUE(result.ok()) << result.error().message;
   EXPECT_TRUE(result->exhausted);
   EXPECT_EQ(result->flights.size(), 3U);

@@ -58,7 +58,8 @@ TEST_P(FindsFailures, WithAThirdOfTheFlightsOfRandomSearch) {
   EXPECT_LE(3.0 * median(by_model), median(by_chance));
   // Ten draws may be lucky: random search's median follows from the share.
   EXPECT_LE(3.0 * median(by_model), std::log(0.5) / std::log(1.0 - share));
-  EXPECT_LE(*std::max_element(by_model.begin(), by_model.end()), kMostModel) << "each seed finds it";
+  EXPECT_LE(*std::max_element(by_model.begin(), by_model.end()), kMostModel)
+      << "each seed finds it";
 }
 
 INSTANTIATE_TEST_SUITE_P(PointSearch,

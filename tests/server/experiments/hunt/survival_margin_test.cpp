@@ -45,10 +45,10 @@ TEST(SurvivalMargin, IsTheProductOfItsFactors) {
   EXPECT_FALSE(margin.failed);
   EXPECT_EQ(margin.failure, "");
   const auto shares = factors(good_flight());
-  EXPECT_NEAR(shares.at("tracked"), 0.8, 1e-9);    // (0.99 - 0.95) / 0.05
-  EXPECT_NEAR(shares.at("start"), 0.75, 1e-9);     // 1 - 1 s / 4 s
-  EXPECT_NEAR(shares.at("points"), 0.75, 1e-9);    // 300 / 400
-  EXPECT_NEAR(shares.at("scale"), 0.678, 1e-3);    // 1 - log2(1.25)
+  EXPECT_NEAR(shares.at("tracked"), 0.8, 1e-9);         // (0.99 - 0.95) / 0.05
+  EXPECT_NEAR(shares.at("start"), 0.75, 1e-9);          // 1 - 1 s / 4 s
+  EXPECT_NEAR(shares.at("points"), 0.75, 1e-9);         // 300 / 400
+  EXPECT_NEAR(shares.at("scale"), 0.678, 1e-3);         // 1 - log2(1.25)
   EXPECT_NEAR(shares.at("position"), 2.0 / 3.0, 1e-9);  // 1 / (1 + 0.5 % / 1 %)
   EXPECT_NEAR(margin.value, 0.8 * 0.75 * 0.75 * 0.678 * 2.0 / 3.0, 1e-3);
 }
@@ -117,8 +117,8 @@ TEST(SurvivalMargin, AnErrorBeyondTheLimitIsAFailure) {
 
 TEST(SurvivalMargin, ReadsItsEvidenceFromARun) {
   const overfly::testing::TemporaryFolder folder;
-  const auto scenario = server::testing::small_scenario(
-      {R"(estimators=[{"name":"p","type":"perfect"}])"});
+  const auto scenario =
+      server::testing::small_scenario({R"(estimators=[{"name":"p","type":"perfect"}])"});
   ASSERT_TRUE(run_scenario(scenario, server::testing::options_for(folder.path() / "run")).ok());
   const auto evidence = read_evidence(folder.path() / "run", "p");
   ASSERT_TRUE(evidence.ok()) << evidence.error().message;
