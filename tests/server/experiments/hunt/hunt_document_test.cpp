@@ -20,7 +20,7 @@ const fs::path& scenarios() {
   return folder;
 }
 
-Json document() {
+Json limits_document() {
   return {{"format_version", 1},
           {"scenario", "course.json"},
           {"axes",
@@ -38,7 +38,7 @@ std::string message(const Json& json, const std::string& estimator = "") {
 }
 
 TEST(HuntDocument, ReadsFieldsAndDefaults) {
-  Json json = document();
+  Json json = limits_document();
   const Result<Hunt> plain = resolve(json);
   ASSERT_TRUE(plain.ok()) << plain.error().message;
   EXPECT_EQ(plain->estimator, "feature");
@@ -70,7 +70,7 @@ TEST(HuntDocument, ReadsFieldsAndDefaults) {
 }
 
 TEST(HuntDocument, GivesEachPointItsFlight) {
-  const Hunt hunt = resolve(document()).value();
+  const Hunt hunt = resolve(limits_document()).value();
   const auto axes = search_axes(hunt);
   ASSERT_EQ(axes.size(), 2U);
   EXPECT_EQ(axes[0].values, 0U);
@@ -88,7 +88,7 @@ TEST(HuntDocument, GivesEachPointItsFlight) {
 }
 
 TEST(HuntDocument, TakesOneEstimatorOfTheScenario) {
-  Json json = document();
+  Json json = limits_document();
   json["set"] = {
       {"estimators", {{{"name", "a"}, {"type", "perfect"}}, {{"name", "b"}, {"type", "feature"}}}}};
   EXPECT_EQ(resolve(json).value().estimator, "a");
@@ -103,7 +103,7 @@ TEST(HuntDocument, TakesOneEstimatorOfTheScenario) {
 
 TEST(HuntDocument, NamesWhatIsInvalid) {
   const auto with = [](const char* field, const Json& value) {
-    Json json = document();
+    Json json = limits_document();
     json[field] = value;
     return message(json);
   };
@@ -117,7 +117,7 @@ TEST(HuntDocument, NamesWhatIsInvalid) {
   EXPECT_THAT(with("axes", reversed), HasSubstr("axes.0.to = 10: must be at least"));
   const Json unknown = {{{"path", "flight.course.airsped"}, {"from", 1}, {"to", 2}}};
   EXPECT_THAT(with("axes", unknown), HasSubstr("airsped"));
-  Json few = document();
+  Json few = limits_document();
   few["most_flights"] = 2;
   few["repeats"] = 3;
   EXPECT_THAT(message(few), HasSubstr("most_flights = 2: must be at least repeats = 3"));
@@ -125,7 +125,7 @@ TEST(HuntDocument, NamesWhatIsInvalid) {
 
 /// Limits beyond those of the scenario are found at a corner, before any flight.
 TEST(HuntDocument, ChecksEveryCornerOfTheLimits) {
-  Json json = document();
+  Json json = limits_document();
   json["axes"][0]["from"] = -1;
   EXPECT_THAT(message(json), HasSubstr("flight.course.airspeed_m_s = -1"));
   json["axes"][0]["from"] = 10;
