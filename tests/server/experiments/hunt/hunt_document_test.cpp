@@ -81,7 +81,8 @@ TEST(HuntDocument, GivesEachPointItsFlight) {
   EXPECT_EQ(at(0.0, 0.0), Json({{speed, 10.0}, {height, 100}}));
   EXPECT_EQ(at(1.0, 1.0), Json({{speed, 30.0}, {height, 300}}));
   EXPECT_EQ(at(0.123456789, 0.5), Json({{speed, 12.46914}, {height, 200}})) << "seven digits";
-  const Result<Scenario> scenario = scenario_of(hunt.sweep, cell_at(hunt, {{0.25, 0.5}}), 0);
+  const Result<Scenario> scenario =
+      scenario_of(hunt.sweep, cell_at(hunt, Eigen::Vector2d(0.25, 0.5)), 0);
   ASSERT_TRUE(scenario.ok());
   EXPECT_EQ(scenario->resolved.at("flight").at("course").at("airspeed_m_s"), 15.0);
   EXPECT_EQ(scenario->estimators.size(), 1U);
@@ -93,7 +94,8 @@ TEST(HuntDocument, TakesOneEstimatorOfTheScenario) {
       {"estimators", {{{"name", "a"}, {"type", "perfect"}}, {{"name", "b"}, {"type", "feature"}}}}};
   EXPECT_EQ(resolve(json).value().estimator, "a");
   const Hunt hunt = resolve(json, "b").value();
-  const Scenario scenario = scenario_of(hunt.sweep, cell_at(hunt, {{0.5, 0.5}}), 0).value();
+  const Scenario scenario =
+      scenario_of(hunt.sweep, cell_at(hunt, Eigen::Vector2d(0.5, 0.5)), 0).value();
   ASSERT_EQ(scenario.estimators.size(), 1U);
   EXPECT_EQ(scenario.estimators[0].name, "b");
   EXPECT_THAT(message(json, "c"), HasSubstr("estimator = c: must be one of a, b"));

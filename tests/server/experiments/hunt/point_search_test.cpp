@@ -161,7 +161,7 @@ TEST_P(FindsFailures, WithAThirdOfTheFlightsOfRandomSearch) {
 INSTANTIATE_TEST_SUITE_P(PointSearch,
                          FindsFailures,
                          ::testing::Range(std::size_t{0}, std::size_t{3}),
-                         [](const auto& info) { return surfaces()[info.param](1).name; });
+                         [](const auto& test) { return surfaces()[test.param](1).name; });
 
 /// With the whole budget the search finds a lower margin than random points.
 TEST(PointSearch, FindsALowerMarginThanRandomSearch) {
