@@ -178,6 +178,11 @@ struct AlignmentRemarks {
                                        const Options& options,
                                        AlignmentRemarks* remarks = nullptr);
 
+/// Largest ratio of the estimate's scales in two windows of 10 s, at least 1; infinite if it stood
+/// still in one of them only. Empty if the matches have no such window. Outcome DIVERGED is one
+/// above 2.
+[[nodiscard]] std::optional<double> scale_change(const std::vector<MatchedPose>& matches);
+
 /// Scores an estimate against the truth: outcome, coverage and every alignment mode.
 /// Options::flight defines the frames of the flight.
 [[nodiscard]] Score score(const Trajectory& T_world_camera_truth,

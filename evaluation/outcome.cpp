@@ -50,6 +50,31 @@ std::vector<Step> steps_of(const std::vector<MatchedPose>& matches) {
   return steps;
 }
 
+/// Scale of the estimate, vo / truth, so that an estimate that does not move has scale 0.
+struct WindowScale {
+  std::int64_t end_ns = 0;
+  double scale = 0.0;
+};
+
+/// Of every window of ten steps in which no pose is missing and the truth moves.
+std::vector<WindowScale> window_scales(const std::vector<MatchedPose>& matches) {
+  const std::vector<Step> steps = steps_of(matches);
+  std::vector<WindowScale> windows;
+  for (std::size_t end = kWindowSteps; end <= steps.size(); ++end) {
+    double truth_m = 0.0;
+    double vo = 0.0;
+    bool broken = false;
+    for (std::size_t i = end - kWindowSteps; i < end; ++i) {
+      truth_m += steps[i].truth_m;
+      vo += steps[i].vo;
+      broken = broken || steps[i].broken;
+    }
+    if (broken || truth_m < kWindowMinM) continue;
+    windows.push_back({steps[end - 1].end_ns, vo / truth_m});
+  }
+  return windows;
+}
+
 /// Marks the frames that count as tracked, including short stretches that were never received.
 std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
   std::vector<bool> held(flown.size());
@@ -104,26 +129,24 @@ bool starts_late(const std::vector<FlownFrame>& flown, std::size_t first) {
 }  // namespace
 
 std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches) {
-  const std::vector<Step> steps = steps_of(matches);
   double smallest = INFINITY;
   double largest = 0.0;
-  for (std::size_t end = kWindowSteps; end <= steps.size(); ++end) {
-    double truth_m = 0.0;
-    double vo = 0.0;
-    bool broken = false;
-    for (std::size_t i = end - kWindowSteps; i < end; ++i) {
-      truth_m += steps[i].truth_m;
-      vo += steps[i].vo;
-      broken = broken || steps[i].broken;
-    }
-    if (broken || truth_m < kWindowMinM) continue;
-    const double scale =
-        vo / truth_m;  // vo / truth, so that an estimate that does not move gives 0
-    smallest = std::min(smallest, scale);
-    largest = std::max(largest, scale);
-    if (largest > kScaleChange * smallest) return s_from_ns(steps[end - 1].end_ns);
+  for (const WindowScale& window : window_scales(matches)) {
+    smallest = std::min(smallest, window.scale);
+    largest = std::max(largest, window.scale);
+    if (largest > kScaleChange * smallest) return s_from_ns(window.end_ns);
   }
   return std::nullopt;
+}
+
+std::optional<double> scale_change(const std::vector<MatchedPose>& matches) {
+  const std::vector<WindowScale> windows = window_scales(matches);
+  if (windows.empty()) return std::nullopt;
+  const auto [smallest, largest] = std::minmax_element(
+      windows.begin(), windows.end(), [](const WindowScale& a, const WindowScale& b) {
+        return a.scale < b.scale;
+      });
+  return largest->scale > 0.0 ? largest->scale / smallest->scale : 1.0;
 }
 
 std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate, const Options& options) {

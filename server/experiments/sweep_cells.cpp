@@ -1,9 +1,9 @@
 // The cells of a sweep: the grid of its axes, or points drawn from them.
 #include <algorithm>
-#include <numeric>
 #include <random>
 #include <utility>
 
+#include "server/experiments/drawn_numbers.hpp"
 #include "server/experiments/sweep_document.hpp"
 
 namespace overfly::server::experiments {
@@ -41,22 +41,6 @@ Result<std::vector<SweepCell>> grid_cells(const Sweep& sweep) {
     cells = std::move(longer);
   }
   return cells;
-}
-
-/// A number in [0, 1) that is the same with every standard library.
-double unit_number(std::mt19937_64& random) {
-  constexpr double kPerStep = 1.0 / 9007199254740992.0;  // 2^-53
-  return static_cast<double>(random() >> 11U) * kPerStep;
-}
-
-std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = count; i > 1; --i) {
-    const auto other = static_cast<std::size_t>(unit_number(random) * static_cast<double>(i));
-    std::swap(order[i - 1], order[other]);
-  }
-  return order;
 }
 
 /// Each axis is divided into as many equal parts as there are cells, and each part is used once
@@ -129,6 +113,7 @@ Status check_skip(const Sweep& sweep) {
 }  // namespace
 
 Result<std::vector<SweepCell>> cells_of(const Sweep& sweep) {
+  if (sweep.chosen_cells) return *sweep.chosen_cells;
   if (Status status = check_skip(sweep); !status) return status.error();
   Result<std::vector<SweepCell>> cells =
       sweep.latin_hypercube ? drawn_cells(sweep, *sweep.latin_hypercube) : grid_cells(sweep);

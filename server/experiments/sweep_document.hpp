@@ -33,6 +33,12 @@ struct SweepAxis {
   std::optional<std::pair<double, double>> range;
 };
 
+/// One point of the axes.
+struct SweepCell {
+  nlohmann::json values;  ///< axis name -> value, in the order of the axes' names
+  std::vector<Override> changes;
+};
+
 struct RepeatRule {
   int most = 1;
   /// Stop when Wilson's 95 % interval of the success rate has at most this half-width.
@@ -52,6 +58,8 @@ struct Sweep {
   std::vector<Override> changes;  ///< of every flight
   std::vector<SweepAxis> axes;
   std::optional<LatinHypercube> latin_hypercube;
+  /// Points that were chosen otherwise, instead of the grid of the axes.
+  std::optional<std::vector<SweepCell>> chosen_cells;
   std::vector<nlohmann::json> skip;  ///< axis name -> value, or {"min", "max"}
   RepeatRule repeats;
   double timeout_s = 3600.0;
@@ -60,12 +68,6 @@ struct Sweep {
   SourcePolicy sources;     ///< files that its scenarios may name
   /// Further check of every flight's scenario; may be empty.
   std::function<Status(const Scenario&)> check;
-};
-
-/// One point of the axes.
-struct SweepCell {
-  nlohmann::json values;  ///< axis name -> value, in the order of the axes' names
-  std::vector<Override> changes;
 };
 
 /// The JSON schema of sweep files as text, embedded in the program.

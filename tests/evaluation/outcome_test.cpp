@@ -228,6 +228,15 @@ TEST_F(OutcomeTest, AChangeBelowTwoIsNoDivergence) {
   EXPECT_EQ(scored().outcome, Outcome::kCompleted);
 }
 
+TEST_F(OutcomeTest, TheChangeOfScaleIsThatOfItsWindows) {
+  const auto change = [&] { return scale_change(associate(truth_, track_, {}).value()).value(); };
+  EXPECT_NEAR(change(), 1.0, 1e-6);
+  change_scale(&track_, 0.6);
+  EXPECT_NEAR(change(), 1.0 / 0.6, 1e-3);
+  set(90, kFrames, TrackingState::kLost);
+  EXPECT_FALSE(scale_change(associate(truth_, track_, {}).value()).has_value()) << "below 10 s";
+}
+
 TEST_F(OutcomeTest, DivergedWhenItStandsStillAndClaimsToTrack) {
   change_scale(&track_, 0.0);
   EXPECT_EQ(scored().outcome, Outcome::kDiverged);

@@ -231,6 +231,8 @@ MAY_INCLUDE = {
                                   "server/scenario/estimator_spec.hpp", "server/scoring/",
                                   "server/report/plot", "server/experiments"],
     "server/experiments/envelope": ["core/", "evaluation", "server/experiments"],
+    "server/experiments/hunt": ["core/", "evaluation", "server/files/", "server/scenario/",
+                                "server/record/", "server/scoring/", "server/experiments"],
     "server/experiments/jobs": ["core/", "server/files/", "server/runs/run_memory.hpp",
                                 "server/experiments"],
     "server/experiments/service": ["core/", "evaluation", "server/files/", "server/scenario/",
@@ -275,6 +277,7 @@ THIRD_PARTY = [
     (r"ceres/", ["odometry", "flight/smoothing"], False),
     (r"boost/(?!math/)", ["server/net"], False),
     (r"boost/math/", ["evaluation/statistics"], False),
+    (r"nlopt", ["server/experiments/hunt"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/files"], False),
     (r"libdeflate\.h$", ["core/measure", "server/files", "flight/logs/mcap", "flight/logs/probes", "server/export/mcap"], False),
@@ -296,7 +299,8 @@ CALLS = [
     # Text in the program itself needs no guard; everything else may come from outside.
     (r"\b[Jj]son::(parse|sax_parse|from_\w+)\(",
      ["core/outside/outside_json.hpp", "server/scenario/document/scenario_schema.cpp",
-      "server/camera/camera_check.cpp", "server/experiments/sweep_document.cpp"],
+      "server/camera/camera_check.cpp", "server/experiments/sweep_document.cpp",
+      "server/experiments/hunt/hunt_document.cpp"],
      "json_from_outside"),
     # It lets read errors out as exceptions, waits for FIFOs and knows no limit.
     (r"istreambuf_iterator", [], "read_file_text or read_file_bytes"),
