@@ -10,8 +10,8 @@ std::optional<double> roc_area(const std::vector<double>& positive, std::vector<
   double wins = 0.0;
   for (const double score : positive) {
     const auto [below, above] = std::equal_range(negative.begin(), negative.end(), score);
-    wins += static_cast<double>(below - negative.begin()) +
-            0.5 * static_cast<double>(above - below);
+    wins +=
+        static_cast<double>(below - negative.begin()) + 0.5 * static_cast<double>(above - below);
   }
   return wins / (static_cast<double>(positive.size()) * static_cast<double>(negative.size()));
 }

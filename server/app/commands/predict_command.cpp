@@ -71,8 +71,8 @@ Result<prediction::Predicted> predict_quietly_or_not(const PredictArguments& arg
 }
 
 Status write_prediction(const fs::path& folder,
-                   const prediction::Predicted& predicted,
-                   const nlohmann::json& document) {
+                        const prediction::Predicted& predicted,
+                        const nlohmann::json& document) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};

@@ -15,10 +15,10 @@ struct Features {
   /// Corners that stand out of the noise, after motion blur and defocus, per 1000 px: median of the
   /// image's patches.
   double corners_per_kpx = 0.0;
-  double bare_share = 0.0;  ///< of the patches, those with less than one corner in 1000 px
+  double bare_share = 0.0;       ///< of the patches, those with less than one corner in 1000 px
   double self_similarity = 0.0;  ///< image_features.hpp: median of the patches
-  double relief = 0.0;  ///< range of the ground's height in the image over the height above it
-  double rotation_px = 0.0;     ///< motion between frames by the rotation alone, RMS
+  double relief = 0.0;       ///< range of the ground's height in the image over the height above it
+  double rotation_px = 0.0;  ///< motion between frames by the rotation alone, RMS
   double translation_px = 0.0;  ///< by the translation, after the rotation
   double overlap = 1.0;         ///< share of the image still in view kOverlapS later
   double blur_px = 0.0;         ///< motion of the image while the shutter is open, RMS

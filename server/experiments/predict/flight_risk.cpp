@@ -22,8 +22,7 @@ Result<Features> features_at(const FlyingCamera& camera,
                              PatchCamera& patches,
                              renderer::Renderer& renderer) {
   const std::int64_t t_ns = flight.instant_ns(index);
-  const auto states =
-      flight.states_around(t_ns, patches.half_window_ns(), patches.raster_ns());
+  const auto states = flight.states_around(t_ns, patches.half_window_ns(), patches.raster_ns());
   const Result<PatchShot> shot =
       patches.expose(states, t_ns, static_cast<std::int64_t>(index), renderer);
   if (!shot) return shot.error();
@@ -32,8 +31,7 @@ Result<Features> features_at(const FlyingCamera& camera,
   };
   const ViewPoses poses{
       pose_after(0), pose_after(camera.frame_ns()), pose_after(ns_from_s(kOverlapS))};
-  return features_of(
-      camera.spec.model, *shot, t_ns, poses, tiles, camera.sun_elevation_deg);
+  return features_of(camera.spec.model, *shot, t_ns, poses, tiles, camera.sun_elevation_deg);
 }
 
 Status measure_block(const FlyingCamera& camera,
@@ -92,8 +90,7 @@ Result<std::vector<PredictedInstant>> flight_risk(const FlyingCamera& camera,
   const std::size_t blocks = (instants.size() + kBlock - 1) / kBlock;
   const Status drawn =
       draw_all(threads, blocks, [&](std::size_t block, renderer::Renderer& renderer) {
-        return measure_block(
-            camera, flight, block * kBlock, *threads.tiles, renderer, instants);
+        return measure_block(camera, flight, block * kBlock, *threads.tiles, renderer, instants);
       });
   if (!drawn) return drawn.error();
   add_risks(flight.step_s(), instants);

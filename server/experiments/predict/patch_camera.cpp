@@ -137,19 +137,15 @@ Status PatchCamera::develop(renderer::CameraFrame light, std::int64_t frame, Pat
     // The same light with the noise of another frame.
     constexpr std::int64_t kOtherFrame = std::int64_t{1} << 40U;
     CameraShot other;
-    if (Status status =
-            unit_->develop(again, {}, frame + kOtherFrame, other, taken.setting);
+    if (Status status = unit_->develop(again, {}, frame + kOtherFrame, other, taken.setting);
         !status) {
       return status;
     }
     shot.noise_grey = noise_of(whole, grey_of(other.image));
   }
   for (int i = 0; i < per_side_ * per_side_; ++i) {
-    shot.patches.push_back(cut(whole,
-                               i % per_side_ * width_px_,
-                               i / per_side_ * height_px_,
-                               width_px_,
-                               height_px_));
+    shot.patches.push_back(
+        cut(whole, i % per_side_ * width_px_, i / per_side_ * height_px_, width_px_, height_px_));
   }
   return {};
 }

@@ -25,7 +25,7 @@ inline constexpr PatchLayout kFlightPatches{3, 96};
 inline constexpr PatchLayout kMapPatches{2, 64};
 
 struct PatchShot {
-  std::vector<Image> patches;  ///< grey; row by row
+  std::vector<Image> patches;     ///< grey; row by row
   double texels_per_pixel = 0.0;  ///< median of the patches with imagery; 0 = none has any
   double void_share = 0.0;
   double noise_grey = 0.0;

@@ -33,8 +33,8 @@ std::optional<double> sun_elevation_deg(const Scenario& scenario, const Geodetic
 }
 
 Result<Image> ground_of_map(const RiskMap& map,
-                         const terrain::TileSource& tiles,
-                         const std::atomic<bool>* cancel) {
+                            const terrain::TileSource& tiles,
+                            const std::atomic<bool>* cancel) {
   const double width_m = map.cell_m * static_cast<double>(map.columns);
   const double height_m = map.cell_m * static_cast<double>(map.rows);
   const double px_per_m = kPictureSidePx / std::max(width_m, height_m);
@@ -125,8 +125,7 @@ class Predictor {
 
   Status add_map(const FlyingCamera& camera, const WalkedFlight& flight) {
     if (!options_.map) return {};
-    const auto plan =
-        plan_map(flight, *threads_.tiles, options_.map->side_m, options_.map->cell_m);
+    const auto plan = plan_map(flight, *threads_.tiles, options_.map->side_m, options_.map->cell_m);
     if (!plan) {
       predicted_.prediction.warnings.emplace_back(
           "no map: there is no imagery within " +

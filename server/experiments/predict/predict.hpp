@@ -35,8 +35,8 @@ struct Predicted {
 };
 
 /// Flies nothing and starts no estimator.
-/// Errors: kInvalidArgument for a live flight and an unknown camera; kCancelled; as the world's, the
-/// flight's, flight_risk and risk_map.
+/// Errors: kInvalidArgument for a live flight and an unknown camera; kCancelled; as the world's,
+/// the flight's, flight_risk and risk_map.
 [[nodiscard]] Result<Predicted> predict(const Scenario& scenario, const PredictOptions& options);
 
 }  // namespace overfly::server::predict

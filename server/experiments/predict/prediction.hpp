@@ -19,10 +19,10 @@ struct PredictedInstant {
   double north_m = 0.0;
   double height_agl_m = 0.0;
   Features features;
-  Inputs window{};          ///< of the risk model
-  Inputs contributions{};   ///< to the log odds
-  double risk = 0.0;        ///< of a loss within kRiskSpanS of such conditions
-  double risk_so_far = 0.0; ///< of a loss since the start
+  Inputs window{};           ///< of the risk model
+  Inputs contributions{};    ///< to the log odds
+  double risk = 0.0;         ///< of a loss within kRiskSpanS of such conditions
+  double risk_so_far = 0.0;  ///< of a loss since the start
 };
 
 /// Risk of straight and level flight at the mission's height over the ground, by place.

@@ -47,13 +47,12 @@ std::string risk_figure(const Prediction& prediction) {
   risk.series = {{"of a loss within 10 s of such conditions",
                   2,
                   over_time(prediction, [](const auto& at) { return 100.0 * at.risk; })},
-                 {"of a loss since the start",
-                  1,
-                  over_time(prediction, [](const auto& at) { return 100.0 * at.risk_so_far; })}};
+                 {"of a loss since the start", 1, over_time(prediction, [](const auto& at) {
+                    return 100.0 * at.risk_so_far;
+                  })}};
   risk.levels = {{100.0 * kRisky, "risky"}};
-  return html::figure("Time line of risk.",
-                      "Probabilities that the estimator is lost.",
-                      plot::svg_of(risk));
+  return html::figure(
+      "Time line of risk.", "Probabilities that the estimator is lost.", plot::svg_of(risk));
 }
 
 struct FeaturePlot {
@@ -66,18 +65,31 @@ struct FeaturePlot {
 
 const std::vector<FeaturePlot>& feature_plots() {
   static const std::vector<FeaturePlot> plots = {
-      {"texels", "Texels per pixel", "texels", [](const auto& f) { return f.texels_per_pixel; },
+      {"texels",
+       "Texels per pixel",
+       "texels",
+       [](const auto& f) { return f.texels_per_pixel; },
        true},
-      {"corners", "Corners after blur, per 1000 px", "corners",
+      {"corners",
+       "Corners after blur, per 1000 px",
+       "corners",
        [](const auto& f) { return f.corners_per_kpx; }},
       {"bare", "Image without corners", "%", [](const auto& f) { return 100.0 * f.bare_share; }},
-      {"similarity", "Self-similarity within 20 px", "correlation",
+      {"similarity",
+       "Self-similarity within 20 px",
+       "correlation",
        [](const auto& f) { return f.self_similarity; }},
-      {"rotation", "Motion between frames by rotation", "px",
+      {"rotation",
+       "Motion between frames by rotation",
+       "px",
        [](const auto& f) { return f.rotation_px; }},
-      {"translation", "Motion between frames by translation", "px",
+      {"translation",
+       "Motion between frames by translation",
+       "px",
        [](const auto& f) { return f.translation_px; }},
-      {"overlap", "Overlap with the image 1 s later", "%",
+      {"overlap",
+       "Overlap with the image 1 s later",
+       "%",
        [](const auto& f) { return 100.0 * f.overlap; }},
       {"blur", "Motion blur", "px", [](const auto& f) { return f.blur_px; }},
       {"relief", "Relief over height", "%", [](const auto& f) { return 100.0 * f.relief; }},
@@ -151,14 +163,15 @@ Result<std::string> map_figure(const Prediction& prediction, const Image& ground
   if (!track.empty() && !track.front().is_gap()) picture.markers = {{track.front(), "start"}};
   picture.series = {{"flight", 0, track}};
   char caption[200];
-  std::snprintf(caption,
-                sizeof caption,
-                "Straight and level at %.0f m over the ground, %.1f m/s, heading %.0f deg; cells of "
-                "%.0f m. Axes of the world frame.",
-                map.height_agl_m,
-                map.speed_m_s,
-                map.heading_deg,
-                map.cell_m);
+  std::snprintf(
+      caption,
+      sizeof caption,
+      "Straight and level at %.0f m over the ground, %.1f m/s, heading %.0f deg; cells of "
+      "%.0f m. Axes of the world frame.",
+      map.height_agl_m,
+      map.speed_m_s,
+      map.heading_deg,
+      map.cell_m);
   return html::figure("Map of risk.", caption, plot::svg_of(picture)) + legend();
 }
 
@@ -224,13 +237,12 @@ Image coloured_map(const RiskMap& map, const Image& ground) {
 
 Result<std::string> page_of(const Prediction& prediction, const Image& ground) {
   const std::string name = prediction.title.empty() ? prediction.scenario : prediction.title;
-  std::string page =
-      html::page_start("Risk of " + name + " - Overfly") + "<h1>" +
-      plot::escaped("Risk of " + name) + "</h1>\n" +
-      html::paragraph("Prediction by Overfly " + html::program_text() + " for " +
-                          prediction.flight + ", camera " + prediction.camera +
-                          ". Nothing was flown.",
-                      "lead");
+  std::string page = html::page_start("Risk of " + name + " - Overfly") + "<h1>" +
+                     plot::escaped("Risk of " + name) + "</h1>\n" +
+                     html::paragraph("Prediction by Overfly " + html::program_text() + " for " +
+                                         prediction.flight + ", camera " + prediction.camera +
+                                         ". Nothing was flown.",
+                                     "lead");
   const std::vector<std::string> sentences = sentences_of(prediction);
   for (std::size_t i = 0; i < sentences.size(); ++i) {
     page += html::paragraph(sentences[i], i == 0 ? "verdict" : "");

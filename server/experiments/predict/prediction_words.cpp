@@ -82,9 +82,9 @@ std::string map_sentence(const RiskMap& map) {
       map.risk.begin(), map.risk.end(), [](const auto& risk) { return risk.has_value(); });
   if (cells == 0) return "The map has no cell with imagery.";
   return "Straight and level at " + short_number(map.height_agl_m) + " m over the ground and " +
-         short_number(map.speed_m_s) + " m/s, " + percent_text(risky_share(map)) + " of the area (" +
-         short_number(1e-3 * map.cell_m * static_cast<double>(map.columns)) + " x " +
-         short_number(1e-3 * map.cell_m * static_cast<double>(map.rows)) +
+         short_number(map.speed_m_s) + " m/s, " + percent_text(risky_share(map)) +
+         " of the area (" + short_number(1e-3 * map.cell_m * static_cast<double>(map.columns)) +
+         " x " + short_number(1e-3 * map.cell_m * static_cast<double>(map.rows)) +
          " km) has a risk of at least 50 % within 10 s.";
 }
 
@@ -128,8 +128,7 @@ std::string words_of(const Prediction& prediction, const RiskyStretch& stretch) 
   const double to_s = prediction.instants[stretch.last].t_s;
   const std::string when =
       from_s == to_s ? seconds(from_s) : seconds(from_s) + " to " + seconds(to_s);
-  return when + ": up to " + percent_text(worst.risk) + " within 10 s" +
-         because(reasons_of(worst));
+  return when + ": up to " + percent_text(worst.risk) + " within 10 s" + because(reasons_of(worst));
 }
 
 double risky_share(const RiskMap& map) {
@@ -145,9 +144,8 @@ double risky_share(const RiskMap& map) {
 std::vector<std::string> sentences_of(const Prediction& prediction) {
   std::vector<std::string> sentences;
   if (prediction.instants.empty()) return sentences;
-  sentences.push_back("The estimator is lost in this flight of " +
-                      seconds(prediction.duration_s) + " with a probability of " +
-                      percent_text(prediction.risk) + ".");
+  sentences.push_back("The estimator is lost in this flight of " + seconds(prediction.duration_s) +
+                      " with a probability of " + percent_text(prediction.risk) + ".");
   std::vector<RiskyStretch> stretches = risky_stretches(prediction);
   const std::vector<PredictedInstant>& instants = prediction.instants;
   if (stretches.empty()) {

@@ -53,9 +53,8 @@ AircraftState level_state(const MapPlan& plan, const Eigen::Vector3d& p_world, s
   AircraftState state;
   state.t_ns = t_ns;
   state.T_world_body = {R_world_body_from({0.0, 0.0, plan.heading_rad}), p_world};
-  state.v_body_world_m_s = plan.speed_m_s * Eigen::Vector3d(std::sin(plan.heading_rad),
-                                                            std::cos(plan.heading_rad),
-                                                            0.0);
+  state.v_body_world_m_s =
+      plan.speed_m_s * Eigen::Vector3d(std::sin(plan.heading_rad), std::cos(plan.heading_rad), 0.0);
   state.airspeed_m_s = plan.speed_m_s;
   return state;
 }
@@ -112,8 +111,7 @@ class Mapper {
     };
     const ViewPoses poses{
         pose_after(0), pose_after(camera_.frame_ns()), pose_after(ns_from_s(kOverlapS))};
-    return features_of(
-        camera_.spec.model, *shot, kAtNs, poses, tiles_, camera_.sun_elevation_deg);
+    return features_of(camera_.spec.model, *shot, kAtNs, poses, tiles_, camera_.sun_elevation_deg);
   }
 
   const FlyingCamera& camera_;

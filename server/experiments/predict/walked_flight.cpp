@@ -42,8 +42,7 @@ Result<WalkedFlight> WalkedFlight::walk(TruthSource& source,
   if (flight.path_.size() < 2) {
     return Error{ErrorCode::kInvalidArgument, "flight: it has no duration"};
   }
-  flight.instants_ =
-      (flight.path_.size() - 1) / static_cast<std::size_t>(flight.every_) + 1;
+  flight.instants_ = (flight.path_.size() - 1) / static_cast<std::size_t>(flight.every_) + 1;
   return flight;
 }
 
