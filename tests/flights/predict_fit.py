@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+"""Fits the risk model of `overfly predict` to the flights of predict_flights.py, and judges it.
+
+Usage: predict_fit.py BINARY RESULTS_FOLDER [--jobs N] [--table FILE] [--coefficients FILE] [--keep]
+
+For each flight that was flown, `overfly predict` computes the features (stored as
+RESULTS_FOLDER/features/NAME.json; --keep uses those that exist). The windows of all flights and
+their outcomes are written to --table (tests/server/experiments/predict/flights.csv); the model is
+fitted to the flights of the set "fit" only and written to --coefficients
+(server/experiments/predict/risk_coefficients.cpp). Printed are the flights by outcome and the area
+under the ROC curve of both sets.
+
+The model is that of server/experiments/predict/risk_model.hpp: the hazard of each second is a
+logistic function of the inputs. It is fitted by maximum likelihood with a ridge penalty, where
+inputs that can only add risk (KINDS) keep that sign. A flight that was lost contributes its seconds
+up to the loss; one that never initialised is lost in its first second.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+from predict_worlds import FITTING, JUDGING, PHOTOGRAPHS
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOM = "server/experiments/predict"
+INPUTS = ["texels", "corners", "bare", "similarity", "relief", "rotation", "translation", "overlap",
+          "blur", "noise", "void", "sun"]
+# -1: more of it can only lower the risk; 1: only raise it; 0: either.
+KINDS = [-1, -1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1]
+RIDGE = 2.0
+
+
+def arguments():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("binary", type=pathlib.Path)
+    parser.add_argument("results", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--table", type=pathlib.Path, default=ROOT / "tests" / ROOM / "flights.csv")
+    parser.add_argument("--coefficients", type=pathlib.Path,
+                        default=ROOT / ROOM / "risk_coefficients.cpp")
+    parser.add_argument("--keep", action="store_true")
+    return parser.parse_args()
+
+
+def features(args, name):
+    """The windows of a flight at whole seconds, each the values of INPUTS."""
+    stored = args.results / "features" / f"{name}.json"
+    if not (args.keep and stored.exists()):
+        scenario = args.results / "flights" / f"{name}.scenario.json"
+        done = subprocess.run([str(args.binary), "predict", str(scenario), "--json", "--quiet",
+                               "--no-map", "--jobs", "1"], capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{name}: {done.stderr[-500:]}")
+        stored.write_text(done.stdout)
+    instants = json.loads(stored.read_text())["instants"]
+    return [[instant["inputs"][key] for key in INPUTS] for instant in instants
+            if instant["t_s"] > 0 and abs(instant["t_s"] - round(instant["t_s"])) < 1e-6]
+
+
+def flights_of(args):
+    """Every flown flight with its windows, sets alternating."""
+    (args.results / "features").mkdir(exist_ok=True)
+    results = sorted((args.results / "flights").glob("*.result.json"))
+    flights = [json.loads(file.read_text()) for file in results]
+    names = [f"{flight['set']}_{flight['number']:03d}" for flight in flights]
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        for flight, windows in zip(flights, pool.map(lambda name: features(args, name), names)):
+            flight["windows"] = [[float(f"{value:.4g}") for value in row] for row in windows]
+    return flights
+
+
+def lost(flight):
+    return flight["outcome"] != "COMPLETED"
+
+
+def lost_second(flight):
+    """The second of the loss, from 1; None if there is none."""
+    if not lost(flight):
+        return None
+    time_s = flight["outcome_time_s"]
+    if flight["outcome"] in ("NOT_INITIALISED", "INIT_LATE") or time_s is None:
+        return 1
+    return min(max(1, math.ceil(time_s)), len(flight["windows"]))
+
+
+def write_table(flights, file):
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("w", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["set", "flight", "world", "outcome", "lost_s", "second", *INPUTS])
+        for flight in flights:
+            for second, window in enumerate(flight["windows"], 1):
+                writer.writerow([flight["set"], flight["number"], flight["world"],
+                                 flight["outcome"], lost_second(flight) or "", second,
+                                 *(f"{value:.4g}" for value in window)])
+
+
+def solved(matrix, vector):
+    """Gaussian elimination with pivoting."""
+    n = len(vector)
+    rows = [list(row) + [value] for row, value in zip(matrix, vector)]
+    for i in range(n):
+        pivot = max(range(i, n), key=lambda r: abs(rows[r][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for r in range(i + 1, n):
+            factor = rows[r][i] / rows[i][i]
+            for c in range(i, n + 1):
+                rows[r][c] -= factor * rows[i][c]
+    result = [0.0] * n
+    for i in reversed(range(n)):
+        result[i] = (rows[i][n] - sum(rows[i][c] * result[c] for c in range(i + 1, n))) / rows[i][i]
+    return result
+
+
+def logistic(value):
+    return 1 / (1 + math.exp(-value)) if value > -500 else 0.0
+
+
+def fitted(flights):
+    """(bias, mean, scale, weight) of the model."""
+    rows, labels = [], []
+    for flight in flights:
+        end = lost_second(flight)
+        for second, window in enumerate(flight["windows"], 1):
+            if end and second > end:
+                break
+            rows.append(window)
+            labels.append(1.0 if second == end else 0.0)
+    n = len(INPUTS)
+    mean = [sum(row[i] for row in rows) / len(rows) for i in range(n)]
+    scale = [max(1e-3, math.sqrt(sum((row[i] - mean[i]) ** 2 for row in rows) / len(rows)))
+             for i in range(n)]
+    rows = [[1.0] + [(row[i] - mean[i]) / scale[i] for i in range(n)] for row in rows]
+    free = [True] * (n + 1)
+    while True:
+        beta = newton(rows, labels, free)
+        wrong = [i for i in range(n) if free[i + 1] and KINDS[i] * beta[i + 1] < 0]
+        if not wrong:
+            return beta[0], mean, scale, beta[1:]
+        worst = max(wrong, key=lambda i: abs(beta[i + 1]))
+        free[worst + 1] = False
+
+
+def newton(rows, labels, free):
+    """Maximum of the penalised likelihood over the free coefficients; the others are 0."""
+    used = [i for i, is_free in enumerate(free) if is_free]
+    rows = [[row[i] for i in used] for row in rows]
+    beta = [0.0] * len(used)
+    for _ in range(50):
+        gradient = [-RIDGE * b if i else 0.0 for i, b in enumerate(beta)]
+        hessian = [[RIDGE if i == j and i else 0.0 for j in range(len(used))]
+                   for i in range(len(used))]
+        for row, label in zip(rows, labels):
+            p = logistic(sum(b * x for b, x in zip(beta, row)))
+            weight = p * (1 - p)
+            for i, x in enumerate(row):
+                gradient[i] += (label - p) * x
+                line, wx = hessian[i], weight * x
+                for j in range(i + 1):
+                    line[j] += wx * row[j]
+        for i in range(len(used)):
+            for j in range(i):
+                hessian[j][i] = hessian[i][j]
+        step = solved(hessian, gradient)
+        beta = [b + s for b, s in zip(beta, step)]
+        if max(abs(s) for s in step) < 1e-8:
+            break
+    full = [0.0] * len(free)
+    for i, b in zip(used, beta):
+        full[i] = b
+    return full
+
+
+def flight_risk(model, flight):
+    bias, mean, scale, weight = model
+    survival = 1.0
+    for window in flight["windows"]:
+        survival *= 1 - logistic(bias + sum(
+            w * (x - m) / s for w, x, m, s in zip(weight, window, mean, scale)))
+    return 1 - survival
+
+
+def roc_area(model, flights):
+    positive = [flight_risk(model, flight) for flight in flights if lost(flight)]
+    negative = [flight_risk(model, flight) for flight in flights if not lost(flight)]
+    wins = sum((p > n) + 0.5 * (p == n) for p in positive for n in negative)
+    pairs = len(positive) * len(negative)
+    return wins / pairs if pairs else float("nan")
+
+
+def numbers(values):
+    return ",\n".join(f"       {value:.6g}" for value in values)
+
+
+def write_coefficients(model, flights, file):
+    bias, mean, scale, weight = model
+    fit = [flight for flight in flights if flight["set"] == "fit"]
+    count = sum(lost(flight) for flight in fit)
+    file.write_text(f"""// Written by tests/flights/predict_fit.py from tests/{ROOM}/flights.csv.
+// Fitted to {len(fit)} flights of 14 s with the native estimator, {count} lost and {len(fit) - count} completed, over the worlds
+// {", ".join(FITTING)} (tests/flights/predict_worlds.py).
+// Each value: {", ".join(INPUTS)}.
+#include "{ROOM}/risk_model.hpp"
+
+namespace overfly::server::predict {{
+
+const RiskModel& fitted_model() {{
+  static const RiskModel model{{
+      {bias:.6g},
+      {{{numbers(mean).strip()}}},
+      {{{numbers(scale).strip()}}},
+      {{{numbers(weight).strip()}}}}};
+  return model;
+}}
+
+}}  // namespace overfly::server::predict
+""")
+    subprocess.run(["clang-format", "-i", str(file)], check=False)
+
+
+def report(model, flights):
+    print("| set | flights | lost | completed | area under the ROC curve |\n|---|---|---|---|---|")
+    judged = [flight for flight in flights if flight["set"] == "judge"]
+    sets = {"fitted": [flight for flight in flights if flight["set"] == "fit"],
+            "other worlds": judged,
+            "of these, photographs": [f for f in judged if f["world"] in PHOTOGRAPHS],
+            "of these, built": [f for f in judged if f["world"] not in PHOTOGRAPHS]}
+    for name, some in sets.items():
+        count = sum(lost(flight) for flight in some)
+        print(f"| {name} | {len(some)} | {count} | {len(some) - count} | "
+              f"{roc_area(model, some):.3f} |")
+    print("\n| world | lost | completed |\n|---|---|---|")
+    for world in [*FITTING, *JUDGING]:
+        some = [flight for flight in flights if flight["world"] == world]
+        print(f"| {world} | {sum(map(lost, some))} | {len(some) - sum(map(lost, some))} |")
+    print("\n| input | mean | scale | log odds per scale |\n|---|---|---|---|")
+    for row in zip(INPUTS, *model[1:]):
+        print("| {} | {:.3f} | {:.3f} | {:+.3f} |".format(*row))
+
+
+def main():
+    args = arguments()
+    flights = flights_of(args)
+    write_table(flights, args.table)
+    model = fitted([flight for flight in flights if flight["set"] == "fit"])
+    write_coefficients(model, flights, args.coefficients)
+    report(model, flights)
+
+
+if __name__ == "__main__":
+    main()
