@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "tests/server/app/command_line_fixture.hpp"
 #include "tests/server/app/program.hpp"
@@ -78,7 +81,7 @@ TEST_F(CommandLine, PredictCanBeCancelled) {
                              path("cancelled")},
                             path(""));
   for (int i = 0; i < 200 && predicting.err().find("the flight") == std::string::npos; ++i) {
-    usleep(10'000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   predicting.signal(SIGINT);
   EXPECT_EQ(predicting.wait(), 3);

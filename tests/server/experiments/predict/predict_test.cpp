@@ -119,7 +119,7 @@ TEST_F(PatchCameraTest, DefocusLeavesFewerCorners) {
     spec_.sensor.enabled = true;
     spec_.sensor.defocus_sigma_px = sigma_px;
     const auto camera = PatchCamera::create(spec_, 0, 1, kFlightPatches).value();
-    // From 4000 m the image has more texels than pixels.
+    // From 2000 m a pixel is a texel.
     std::vector<AircraftState> high = states(0);
     high.front().T_world_body.translation.z() += 1800.0;
     const PatchShot taken = camera->expose(high, 0, 0, *renderer_).value();
