@@ -203,7 +203,7 @@ def write_coefficients(model, flights, file):
     fit = [flight for flight in flights if flight["set"] == "fit"]
     count = sum(lost(flight) for flight in fit)
     file.write_text(f"""// Written by tests/flights/predict_fit.py from tests/{ROOM}/flights.csv.
-// Fitted to {len(fit)} flights of 14 s with the native estimator, {count} lost and {len(fit) - count} completed, over the worlds
+// Fitted to {len(fit)} flights of 10 s with the native estimator, {count} lost and {len(fit) - count} completed, over the worlds
 // {", ".join(FITTING)} (tests/flights/predict_worlds.py).
 // Each value: {", ".join(INPUTS)}.
 #include "{ROOM}/risk_model.hpp"

@@ -8,6 +8,7 @@ are painted here: PNG files with a world file.
 import json
 import pathlib
 import random
+import shutil
 import struct
 import subprocess
 import zlib
@@ -78,6 +79,11 @@ def write_coarser(file, target, factor):
     """A virtual raster of the file's area averages, and the code of its reference system."""
     width, height, left, top, dx, dy, epsg, bands = tiff_size_and_place(file)
     columns, rows = width // factor, height // factor
+    if file.is_relative_to(target.parent):
+        inside = file.relative_to(target.parent)
+    else:  # the parts of a virtual raster must lie in its folder
+        inside = f"{target.stem}_source{file.suffix}"
+        shutil.copyfile(file, target.parent / inside)
     frame = (f'<SrcRect xOff="0" yOff="0" xSize="{columns * factor}" ySize="{rows * factor}"/>'
              f'<DstRect xOff="0" yOff="0" xSize="{columns}" ySize="{rows}"/>')
 
@@ -86,7 +92,7 @@ def write_coarser(file, target, factor):
             '<VRTRasterBand dataType="Byte">'
         return (head + (f"<ColorInterp>{colour}</ColorInterp>" if colour else "") +
                 '<SimpleSource resampling="average">'
-                f'<SourceFilename relativeToVRT="0">{file}</SourceFilename>'
+                f'<SourceFilename relativeToVRT="1">{inside}</SourceFilename>'
                 f"<SourceBand>{source}</SourceBand>{frame}</SimpleSource></VRTRasterBand>\n")
 
     colours = ["Red", "Green", "Blue"] if bands >= 3 else ["Gray"]
