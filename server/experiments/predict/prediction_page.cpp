@@ -60,16 +60,11 @@ struct FeaturePlot {
   const char* title;
   const char* unit;
   double (*value)(const Features&);
-  bool logarithmic = false;
 };
 
 const std::vector<FeaturePlot>& feature_plots() {
   static const std::vector<FeaturePlot> plots = {
-      {"texels",
-       "Texels per pixel",
-       "texels",
-       [](const auto& f) { return f.texels_per_pixel; },
-       true},
+      {"texels", "Texels per pixel", "texels", [](const auto& f) { return f.texels_per_pixel; }},
       {"corners",
        "Corners after blur, per 1000 px",
        "corners",
@@ -109,8 +104,7 @@ std::string feature_figures(const Prediction& prediction) {
     plot.y_label = each.unit;
     plot.width_px = kSmallWidthPx;
     plot.area_height_px = kSmallHeightPx;
-    plot.from_zero = !each.logarithmic;
-    plot.logarithmic = each.logarithmic;
+    plot.from_zero = true;
     plot.legend = false;
     plot.series = {{each.title, 1, over_time(prediction, [&](const auto& at) {
                       return each.value(at.features);

@@ -1,6 +1,7 @@
 #include "server/experiments/predict/prediction_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -26,8 +27,10 @@ std::string seconds(double t_s) {
   return text;
 }
 
-/// What is wrong if the i-th input is worse than usual.
-std::string reason(std::size_t input, const Features& features) {
+/// What is wrong if the i-th input is worse than usual. Motion, overlap and blur are those of the
+/// window's worst instant (the inverse of inputs_of).
+std::string reason(std::size_t input, const Features& features, const Inputs& window) {
+  const auto motion_px = [&](double value) { return value * value * features.image_width_px; };
   switch (input) {
     case 0:
       return "coarse imagery (" + short_number(features.texels_per_pixel) + " texels per pixel)";
@@ -40,14 +43,14 @@ std::string reason(std::size_t input, const Features& features) {
     case 4:
       return "relief (" + short_number(features.relief) + " of the height)";
     case 5:
-      return "fast rotation (" + short_number(features.rotation_px) + " px between frames)";
+      return "fast rotation (" + short_number(motion_px(window[5])) + " px between frames)";
     case 6:
-      return "fast motion over the ground (" + short_number(features.translation_px) +
+      return "fast motion over the ground (" + short_number(motion_px(window[6])) +
              " px between frames)";
     case 7:
-      return "little overlap (" + percent_text(features.overlap) + " after 1 s)";
+      return "little overlap (" + percent_text(1.0 - window[7]) + " after 1 s)";
     case 8:
-      return "motion blur (" + short_number(features.blur_px) + " px)";
+      return "motion blur (" + short_number(std::expm1(window[8])) + " px)";
     case 9:
       return "noise (" + short_number(features.noise_grey) + " grey levels)";
     case 10:
@@ -117,7 +120,8 @@ std::vector<std::string> reasons_of(const PredictedInstant& instant, std::size_t
   std::vector<std::string> reasons;
   for (const std::size_t input : order) {
     if (reasons.size() == most || instant.contributions[input] < kLeastReason) break;
-    if (is_worse(input, instant.window)) reasons.push_back(reason(input, instant.features));
+    if (is_worse(input, instant.window))
+      reasons.push_back(reason(input, instant.features, instant.window));
   }
   return reasons;
 }

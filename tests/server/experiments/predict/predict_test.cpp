@@ -241,8 +241,7 @@ Prediction risky_prediction() {
     instant.t_s = 0.5 * static_cast<double>(k);
     instant.window = fitted_model().mean;
     instant.risk = k == 1 ? 0.6 : k == 2 ? 0.9 : 0.1;
-    instant.features.blur_px = 7.0;
-    instant.window[8] += 1.0;
+    instant.window[8] = std::log1p(70.0);  // of 70 px
     instant.contributions[8] = 1.5;
     instant.contributions[0] = 1.0;  // not worse than the mean: no reason
   }
@@ -259,7 +258,7 @@ TEST(PredictionWords, SayWhenAndWhy) {
   const auto sentences = sentences_of(prediction);
   EXPECT_THAT(sentences[0], HasSubstr("with a probability of 75 %"));
   EXPECT_EQ(sentences[1],
-            "Risky at 0.5 s to 1.0 s: up to 90 % within 10 s, because of motion blur (7 px).");
+            "Risky at 0.5 s to 1.0 s: up to 90 % within 10 s, because of motion blur (70 px).");
 }
 
 TEST(PredictionWords, SayThatNothingIsRisky) {
