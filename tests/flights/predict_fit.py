@@ -6,9 +6,9 @@ Usage: predict_fit.py BINARY RESULTS_FOLDER [--jobs N] [--table FILE] [--coeffic
 For each flight that was flown, `overfly predict` computes the features (stored as
 RESULTS_FOLDER/features/NAME.json; --keep uses those that exist). The windows of all flights and
 their outcomes are written to --table (tests/server/experiments/predict/flights.csv); the model is
-fitted to the flights of the set "fit" only and written to --coefficients
-(server/experiments/predict/risk_coefficients.cpp). Printed are the flights by outcome and the area
-under the ROC curve of both sets.
+fitted to the flights of the set "fit" only, which also choose the strength of its penalty, and
+written to --coefficients (server/experiments/predict/risk_coefficients.cpp). Printed are the flights
+by outcome and the area under the ROC curve of both sets.
 
 The model is that of server/experiments/predict/risk_model.hpp: the hazard of each second is a
 logistic function of the inputs. It is fitted by maximum likelihood with a ridge penalty, where
@@ -33,7 +33,9 @@ INPUTS = ["texels", "corners", "bare", "similarity", "relief", "rotation", "tran
           "blur", "noise", "void", "sun"]
 # -1: more of it can only lower the risk; 1: only raise it; 0: either.
 KINDS = [-1, -1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1]
-RIDGE = 2.0
+# Strengths of the penalty that are tried: the one with which worlds left out of the fitting set
+# are judged best is used.
+RIDGES = [1.0, 3.0, 10.0, 30.0, 100.0]
 
 
 def arguments():
@@ -122,7 +124,7 @@ def logistic(value):
     return 1 / (1 + math.exp(-value)) if value > -500 else 0.0
 
 
-def fitted(flights):
+def fitted(flights, ridge):
     """(bias, mean, scale, weight) of the model."""
     rows, labels = [], []
     for flight in flights:
@@ -139,7 +141,7 @@ def fitted(flights):
     rows = [[1.0] + [(row[i] - mean[i]) / scale[i] for i in range(n)] for row in rows]
     free = [True] * (n + 1)
     while True:
-        beta = newton(rows, labels, free)
+        beta = newton(rows, labels, free, ridge)
         wrong = [i for i in range(n) if free[i + 1] and KINDS[i] * beta[i + 1] < 0]
         if not wrong:
             return beta[0], mean, scale, beta[1:]
@@ -147,14 +149,14 @@ def fitted(flights):
         free[worst + 1] = False
 
 
-def newton(rows, labels, free):
+def newton(rows, labels, free, ridge):
     """Maximum of the penalised likelihood over the free coefficients; the others are 0."""
     used = [i for i, is_free in enumerate(free) if is_free]
     rows = [[row[i] for i in used] for row in rows]
     beta = [0.0] * len(used)
     for _ in range(50):
-        gradient = [-RIDGE * b if i else 0.0 for i, b in enumerate(beta)]
-        hessian = [[RIDGE if i == j and i else 0.0 for j in range(len(used))]
+        gradient = [-ridge * b if i else 0.0 for i, b in enumerate(beta)]
+        hessian = [[ridge if i == j and i else 0.0 for j in range(len(used))]
                    for i in range(len(used))]
         for row, label in zip(rows, labels):
             p = logistic(sum(b * x for b, x in zip(beta, row)))
@@ -187,11 +189,26 @@ def flight_risk(model, flight):
 
 
 def roc_area(model, flights):
-    positive = [flight_risk(model, flight) for flight in flights if lost(flight)]
-    negative = [flight_risk(model, flight) for flight in flights if not lost(flight)]
+    return area_of([(flight_risk(model, flight), lost(flight)) for flight in flights])
+
+
+def area_of(judged):
+    positive = [risk for risk, is_lost in judged if is_lost]
+    negative = [risk for risk, is_lost in judged if not is_lost]
     wins = sum((p > n) + 0.5 * (p == n) for p in positive for n in negative)
     pairs = len(positive) * len(negative)
     return wins / pairs if pairs else float("nan")
+
+
+def left_out_area(flights, ridge):
+    """The area when each world of the fitting set is judged by a model of the others."""
+    judged = []
+    for world in FITTING:
+        others = [flight for flight in flights if flight["world"] != world]
+        model = fitted(others, ridge)
+        judged += [(flight_risk(model, flight), lost(flight))
+                   for flight in flights if flight["world"] == world]
+    return area_of(judged)
 
 
 def numbers(values):
@@ -248,7 +265,11 @@ def main():
     args = arguments()
     flights = flights_of(args)
     write_table(flights, args.table)
-    model = fitted([flight for flight in flights if flight["set"] == "fit"])
+    fit = [flight for flight in flights if flight["set"] == "fit"]
+    areas = {ridge: left_out_area(fit, ridge) for ridge in RIDGES}
+    print("Area over worlds left out of the fitting set, by the penalty: " +
+          ", ".join(f"{ridge:g}: {area:.3f}" for ridge, area in areas.items()) + "\n")
+    model = fitted(fit, max(areas, key=areas.get))
     write_coefficients(model, flights, args.coefficients)
     report(model, flights)
 
