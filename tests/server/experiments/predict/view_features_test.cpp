@@ -11,14 +11,14 @@
 namespace overfly::server::predict {
 namespace {
 
-constexpr double kFocalPx = 500.0;
-constexpr double kHeightM = 200.0;
+constexpr double kViewFocalPx = 500.0;
+constexpr double kViewHeightM = 200.0;
 
 class ViewFeatures : public ::testing::Test {
  protected:
   /// A camera that looks straight down, its image's top to the north.
   [[nodiscard]] Pose nadir_at(double east_m, double north_m, double yaw_rad = 0.0) const {
-    const double up_m = tiles_.ground_up_m(east_m, north_m) + kHeightM;
+    const double up_m = tiles_.ground_up_m(east_m, north_m) + kViewHeightM;
     return Pose{R_world_body_from({0.0, 0.0, yaw_rad}), {east_m, north_m, up_m}} *
            Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
   }
@@ -26,18 +26,18 @@ class ViewFeatures : public ::testing::Test {
 
   server::testing::LevelWorld world_;
   const terrain::TileSource& tiles_ = *world_.world().tiles;
-  const CameraModel camera_{PinholeCamera{640, 480, kFocalPx, kFocalPx, 319.5, 239.5}};
+  const CameraModel camera_{PinholeCamera{640, 480, kViewFocalPx, kViewFocalPx, 319.5, 239.5}};
 };
 
 TEST_F(ViewFeatures, LevelGroundHasNoRelief) { EXPECT_NEAR(relief_over_height(view()), 0.0, 1e-4); }
 
 TEST_F(ViewFeatures, ReliefIsTheRangeOfHeightsOverTheHeight) {
   CameraView hilly = view();
-  const double ground_m = hilly.T_world_camera.translation.z() - kHeightM;
+  const double ground_m = hilly.T_world_camera.translation.z() - kViewHeightM;
   for (ViewPoint& point : hilly.points) point.ground_world->z() = ground_m;
   hilly.points.front().ground_world->z() += 30.0;
   hilly.points.back().ground_world->z() -= 20.0;
-  EXPECT_NEAR(relief_over_height(hilly), 50.0 / kHeightM, 1e-9);
+  EXPECT_NEAR(relief_over_height(hilly), 50.0 / kViewHeightM, 1e-9);
   for (ViewPoint& point : hilly.points) point.ground_world.reset();
   EXPECT_EQ(relief_over_height(hilly), 0.0);
 }
