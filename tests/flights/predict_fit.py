@@ -13,7 +13,7 @@ by outcome and the area under the ROC curve of both sets.
 The model is that of server/experiments/predict/risk_model.hpp: the hazard of each second is a
 logistic function of the inputs. It is fitted by maximum likelihood with a ridge penalty, where
 inputs that can only add risk (KINDS) keep that sign. A flight that was lost contributes its seconds
-up to the loss; one that never initialised is lost in its first second.
+up to the loss; of one that never initialised it is not known in which second it was lost.
 """
 
 import argparse
@@ -35,7 +35,8 @@ INPUTS = ["texels", "corners", "bare", "similarity", "relief", "rotation", "tran
 KINDS = [-1, -1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1]
 # Strengths of the penalty that are tried: the one with which worlds left out of the fitting set
 # are judged best is used.
-RIDGES = [1.0, 3.0, 10.0, 30.0, 100.0]
+RIDGES = [3.0, 10.0, 30.0]
+STEPS = 12  # of the iteration
 
 
 def arguments():
@@ -82,12 +83,12 @@ def lost(flight):
 
 
 def lost_second(flight):
-    """The second of the loss, from 1; None if there is none."""
+    """The second of the loss, from 1; None if there is none or it is not known."""
     if not lost(flight):
         return None
     time_s = flight["outcome_time_s"]
-    if flight["outcome"] in ("NOT_INITIALISED", "INIT_LATE") or time_s is None:
-        return 1
+    if flight["outcome"] == "NOT_INITIALISED" or time_s is None:
+        return None
     return min(max(1, math.ceil(time_s)), len(flight["windows"]))
 
 
@@ -125,58 +126,73 @@ def logistic(value):
 
 
 def fitted(flights, ridge):
-    """(bias, mean, scale, weight) of the model."""
-    rows, labels = [], []
-    for flight in flights:
-        end = lost_second(flight)
-        for second, window in enumerate(flight["windows"], 1):
-            if end and second > end:
-                break
-            rows.append(window)
-            labels.append(1.0 if second == end else 0.0)
+    """(bias, mean, scale, weight) of the model: maximum of the penalised likelihood.
+
+    Expectation maximisation (Dempster, Laird, Rubin 1977) with one step of Newton's method in each
+    iteration: the second in which an estimator that never started was lost is not known.
+    """
+    known = [flight["windows"][:lost_second(flight)] for flight in flights]
     n = len(INPUTS)
+    rows = [window for windows in known for window in windows]
     mean = [sum(row[i] for row in rows) / len(rows) for i in range(n)]
     scale = [max(1e-3, math.sqrt(sum((row[i] - mean[i]) ** 2 for row in rows) / len(rows)))
              for i in range(n)]
-    rows = [[1.0] + [(row[i] - mean[i]) / scale[i] for i in range(n)] for row in rows]
-    free = [True] * (n + 1)
+    cases = [([[1.0] + [(row[i] - mean[i]) / scale[i] for i in range(n)] for row in windows],
+              lost(flight), lost(flight) and lost_second(flight) is None)
+             for windows, flight in zip(known, flights)]
+    used = list(range(n + 1))
+    beta = [-2.0] + [0.0] * n
     while True:
-        beta = newton(rows, labels, free, ridge)
-        wrong = [i for i in range(n) if free[i + 1] and KINDS[i] * beta[i + 1] < 0]
+        for _ in range(STEPS):
+            newton_step(weighted(cases, beta), beta, used, ridge)
+        wrong = [i for i in used if i and KINDS[i - 1] * beta[i] < 0]
         if not wrong:
             return beta[0], mean, scale, beta[1:]
-        worst = max(wrong, key=lambda i: abs(beta[i + 1]))
-        free[worst + 1] = False
+        worst = max(wrong, key=lambda i: abs(beta[i]))
+        used.remove(worst)
+        beta[worst] = 0.0
 
 
-def newton(rows, labels, free, ridge):
-    """Maximum of the penalised likelihood over the free coefficients; the others are 0."""
-    used = [i for i, is_free in enumerate(free) if is_free]
-    rows = [[row[i] for i in used] for row in rows]
-    beta = [0.0] * len(used)
-    for _ in range(50):
-        gradient = [-ridge * b if i else 0.0 for i, b in enumerate(beta)]
-        hessian = [[ridge if i == j and i else 0.0 for j in range(len(used))]
-                   for i in range(len(used))]
-        for row, label in zip(rows, labels):
-            p = logistic(sum(b * x for b, x in zip(beta, row)))
-            weight = p * (1 - p)
-            for i, x in enumerate(row):
-                gradient[i] += (label - p) * x
-                line, wx = hessian[i], weight * x
-                for j in range(i + 1):
-                    line[j] += wx * row[j]
-        for i in range(len(used)):
-            for j in range(i):
-                hessian[j][i] = hessian[i][j]
-        step = solved(hessian, gradient)
-        beta = [b + s for b, s in zip(beta, step)]
-        if max(abs(s) for s in step) < 1e-8:
-            break
-    full = [0.0] * len(free)
-    for i, b in zip(used, beta):
-        full[i] = b
-    return full
+def weighted(cases, beta):
+    """Rows (x, probability of a loss in this second, probability that it was reached)."""
+    rows = []
+    for windows, is_lost, unknown in cases:
+        if not unknown:
+            last = len(windows) - 1
+            rows += [(x, 1.0 if is_lost and k == last else 0.0, 1.0)
+                     for k, x in enumerate(windows)]
+            continue
+        survival, losses = 1.0, []
+        for x in windows:
+            hazard = logistic(sum(b * v for b, v in zip(beta, x)))
+            losses.append(survival * hazard)
+            survival *= 1 - hazard
+        total = sum(losses)
+        reached = 1.0
+        for x, loss in zip(windows, losses):
+            rows.append((x, loss / total, reached))
+            reached -= loss / total
+    return rows
+
+
+def newton_step(rows, beta, used, ridge):
+    size = len(used)
+    gradient = [-ridge * beta[i] if i else 0.0 for i in used]
+    hessian = [[ridge if a == b and used[a] else 0.0 for b in range(size)] for a in range(size)]
+    for x, loss, reached in rows:
+        x = [x[i] for i in used]
+        p = logistic(sum(beta[i] * v for i, v in zip(used, x)))
+        error, weight = loss - reached * p, reached * p * (1 - p)
+        for a, v in enumerate(x):
+            gradient[a] += error * v
+            line, wv = hessian[a], weight * v
+            for b in range(a + 1):
+                line[b] += wv * x[b]
+    for a in range(size):
+        for b in range(a):
+            hessian[b][a] = hessian[a][b]
+    for i, step in zip(used, solved(hessian, gradient)):
+        beta[i] += max(-1.0, min(1.0, step))
 
 
 def flight_risk(model, flight):

@@ -106,13 +106,13 @@ std::int64_t product_of(const Image& grey, int x1, int y1, int x2, int y2) {
   return sum;
 }
 
-/// The highest normalised cross-correlation of a template with the places around it; empty if the
+/// The highest normalised cross-correlation of a template with the places around it; 1 if the
 /// template has too little contrast.
-std::optional<double> second_peak(
+double second_peak(
     const Image& grey, int x, int y, int radius_px, double least_contrast) {
   const Square own = square_at(grey, x, y);
   const double least = least_contrast * kTemplatePixels;
-  if (own.spread() < least * least) return std::nullopt;
+  if (own.spread() < least * least) return 1.0;
   double best = 0.0;
   for (int dy = -radius_px; dy <= radius_px; ++dy) {
     for (int dx = -radius_px; dx <= radius_px; ++dx) {
@@ -164,7 +164,7 @@ std::optional<double> self_similarity(const Image& grey, int radius_px, double l
   const int margin = radius_px + kTemplateHalf;
   const int room_x = grey.width_px - 1 - 2 * margin;
   const int room_y = grey.height_px - 1 - 2 * margin;
-  if (room_x < 0 || room_y < 0) return std::nullopt;
+  if (radius_px < 1 || room_x < 0 || room_y < 0) return std::nullopt;
   // One template, or four where they do not overlap.
   const int columns = room_x >= kTemplateSide ? 2 : 1;
   const int rows = room_y >= kTemplateSide ? 2 : 1;
@@ -172,13 +172,15 @@ std::optional<double> self_similarity(const Image& grey, int radius_px, double l
   for (int i = 0; i < columns * rows; ++i) {
     const int x = margin + (columns == 1 ? room_x / 2 : (i % columns) * room_x);
     const int y = margin + (rows == 1 ? room_y / 2 : (i / columns) * room_y);
-    if (const auto peak = second_peak(grey, x, y, radius_px, least_contrast)) {
-      peaks.push_back(*peak);
-    }
+    peaks.push_back(second_peak(grey, x, y, radius_px, least_contrast));
   }
-  if (peaks.empty()) return std::nullopt;
   std::sort(peaks.begin(), peaks.end());
   return peaks[peaks.size() / 2];
+}
+
+int fitting_radius_px(const Image& grey, int radius_px) {
+  const int side_px = std::min(grey.width_px, grey.height_px);
+  return std::min(radius_px, (side_px - kTemplateSide) / 2);
 }
 
 double noise_of(const Image& first, const Image& second) {

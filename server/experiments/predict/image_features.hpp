@@ -16,12 +16,16 @@ namespace overfly::server::predict {
 
 /// How similar other places within `radius_px` look: for each of a few square templates, the
 /// highest normalised cross-correlation at a distance of more than half a template. The median over
-/// the templates, in [0, 1]; 1 = the pattern repeats. Empty if the image is too small for the
-/// search, or if no template has a standard deviation of at least `least_contrast`.
+/// the templates, in [0, 1]; 1 = the pattern repeats. A template with a standard deviation below
+/// `least_contrast` counts 1: nothing tells such places apart. Empty if the image is too small for
+/// the search.
 /// @param least_contrast  grey levels, > 0
 [[nodiscard]] std::optional<double> self_similarity(const Image& grey,
                                                     int radius_px,
                                                     double least_contrast);
+
+/// The largest search that fits into an image, at most `radius_px`; below 1 if there is none.
+[[nodiscard]] int fitting_radius_px(const Image& grey, int radius_px);
 
 /// Standard deviation of the noise of one image [grey levels], from two images of the same light.
 /// 0 for images without pixels. @pre equal sizes

@@ -86,10 +86,13 @@ TEST(ImageFeatures, APatternThatRepeatsOutsideTheSearchIsUnique) {
 }
 
 TEST(ImageFeatures, SimilarityNeedsContrastAndRoom) {
-  EXPECT_FALSE(self_similarity(Image(96, 96, 1, 77), 20, 3.0)) << "nothing to search for";
-  EXPECT_FALSE(self_similarity(noise_image(96, 1.0, 3), 20, 3.0)) << "less than the contrast";
+  EXPECT_EQ(self_similarity(Image(96, 96, 1, 77), 20, 3.0), 1.0) << "all places are alike";
+  EXPECT_EQ(self_similarity(noise_image(96, 1.0, 3), 20, 3.0), 1.0) << "less than the contrast";
   EXPECT_FALSE(self_similarity(noise_image(52, 30.0, 3), 20, 3.0)) << "smaller than the search";
   EXPECT_TRUE(self_similarity(noise_image(53, 30.0, 3), 20, 3.0));
+  EXPECT_EQ(fitting_radius_px(noise_image(53, 30.0, 3), 20), 20);
+  EXPECT_EQ(fitting_radius_px(noise_image(49, 30.0, 3), 20), 18);
+  EXPECT_LT(fitting_radius_px(noise_image(14, 30.0, 3), 20), 1);
 }
 
 TEST(ImageFeatures, NoiseIsMeasuredFromTwoImages) {
