@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   add_table_command(app, exit_code);
   add_explain_command(app, exit_code);
   add_hunt_command(app, exit_code);
+  add_predict_command(app, exit_code);
   add_report_command(app, exit_code);
   add_agreement_command(app, exit_code);
   add_render_command(app, exit_code);

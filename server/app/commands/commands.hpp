@@ -18,6 +18,7 @@ void add_compare_command(CLI::App& app, int& exit_code);
 void add_table_command(CLI::App& app, int& exit_code);
 void add_explain_command(CLI::App& app, int& exit_code);
 void add_hunt_command(CLI::App& app, int& exit_code);
+void add_predict_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
 void add_agreement_command(CLI::App& app, int& exit_code);
 void add_render_command(CLI::App& app, int& exit_code);
