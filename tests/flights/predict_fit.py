@@ -35,7 +35,7 @@ INPUTS = ["texels", "corners", "bare", "similarity", "relief", "rotation", "tran
 KINDS = [-1, -1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1]
 # Strengths of the penalty that are tried: the one with which worlds left out of the fitting set
 # are judged best is used.
-RIDGES = [3.0, 10.0, 30.0]
+RIDGES = [3.0, 10.0, 30.0, 100.0, 300.0]
 STEPS = 12  # of the iteration
 
 

@@ -6,6 +6,12 @@
 #include "core/motion/pose.hpp"
 
 namespace overfly::server::predict {
+namespace {
+
+/// Correlations near 1 differ in how far they are from it.
+constexpr double kMostSimilar = 1.02;
+
+}  // namespace
 
 Inputs inputs_of(const Features& features) {
   const double texels = std::clamp(features.texels_per_pixel, 1.0 / 32.0, 2.0);
@@ -20,11 +26,11 @@ Inputs inputs_of(const Features& features) {
   return {std::log2(texels),
           std::log1p(corners),
           features.bare_share,
-          features.self_similarity,
+          -std::log(kMostSimilar - std::clamp(features.self_similarity, 0.0, 1.0)),
           std::clamp(features.relief, 0.0, 1.0),
-          std::sqrt(per_width(features.rotation_px)),
-          std::sqrt(per_width(features.translation_px)),
-          1.0 - features.overlap,
+          per_width(features.rotation_px),
+          per_width(features.translation_px),
+          (1.0 - features.overlap) * (1.0 - features.overlap),
           std::log1p(features.blur_px),
           std::log1p(features.noise_grey),
           features.void_share,

@@ -108,8 +108,7 @@ std::int64_t product_of(const Image& grey, int x1, int y1, int x2, int y2) {
 
 /// The highest normalised cross-correlation of a template with the places around it; 1 if the
 /// template has too little contrast.
-double second_peak(
-    const Image& grey, int x, int y, int radius_px, double least_contrast) {
+double second_peak(const Image& grey, int x, int y, int radius_px, double least_contrast) {
   const Square own = square_at(grey, x, y);
   const double least = least_contrast * kTemplatePixels;
   if (own.spread() < least * least) return 1.0;

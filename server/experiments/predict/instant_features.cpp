@@ -38,7 +38,8 @@ void add_image_features(const PatchShot& shot, Features& features) {
         1000.0 * count_corners(patch, threshold) / static_cast<double>(patch.data.size());
     densities.push_back(density);
     bare += density < 1.0 ? 1 : 0;
-    if (const auto similarity = self_similarity(patch, fitting_radius_px(patch, kSearchRadiusPx), contrast)) {
+    if (const auto similarity =
+            self_similarity(patch, fitting_radius_px(patch, kSearchRadiusPx), contrast)) {
       similarities.push_back(*similarity);
     }
   }

@@ -23,6 +23,8 @@ namespace {
 constexpr double kFlightBegins = 0.1;
 constexpr double kMapBegins = 0.4;
 constexpr double kPictureSidePx = 1000.0;
+/// Longer than any flight that is predicted.
+constexpr double kWholeFlightS = 1e6;
 
 std::optional<double> sun_elevation_deg(const Scenario& scenario, const Geodetic& origin) {
   if (!scenario.light) return std::nullopt;
@@ -74,7 +76,7 @@ class Predictor {
     if (!truth) return truth.error();
     const auto flight = WalkedFlight::walk(**truth,
                                            1.0 / options_.rate_hz,
-                                           scenario_.duration_s.value_or(kLongestFlightS),
+                                           scenario_.duration_s.value_or(kWholeFlightS),
                                            options_.cancel);
     if (!flight) return flight.error();
     const FlyingCamera camera{scenario_.cameras[index],

@@ -30,7 +30,7 @@ std::string seconds(double t_s) {
 /// What is wrong if the i-th input is worse than usual. Motion, overlap and blur are those of the
 /// window's worst instant (the inverse of inputs_of).
 std::string reason(std::size_t input, const Features& features, const Inputs& window) {
-  const auto motion_px = [&](double value) { return value * value * features.image_width_px; };
+  const auto motion_px = [&](double value) { return value * features.image_width_px; };
   switch (input) {
     case 0:
       return "coarse imagery (" + short_number(features.texels_per_pixel) + " texels per pixel)";
@@ -48,7 +48,7 @@ std::string reason(std::size_t input, const Features& features, const Inputs& wi
       return "fast motion over the ground (" + short_number(motion_px(window[6])) +
              " px between frames)";
     case 7:
-      return "little overlap (" + percent_text(1.0 - window[7]) + " after 1 s)";
+      return "little overlap (" + percent_text(1.0 - std::sqrt(window[7])) + " after 1 s)";
     case 8:
       return "motion blur (" + short_number(std::expm1(window[8])) + " px)";
     case 9:

@@ -32,7 +32,7 @@ Result<WalkedFlight> WalkedFlight::walk(TruthSource& source,
   const double sparse_s = s_from_ns(end_ns) / static_cast<double>(kMostInstants);
   flight.every_ = std::max<std::int64_t>(
       1, (ns_from_s(std::max(step_s, sparse_s)) + kPathStepNs - 1) / kPathStepNs);
-  for (std::int64_t t_ns = 0; t_ns <= end_ns; t_ns += kPathStepNs) {
+  for (std::int64_t t_ns = 0; t_ns <= end_ns + kNsPerS; t_ns += kPathStepNs) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "the prediction was cancelled"};
     const auto state = source.state_at(t_ns, cancel);
     if (!state) return state.error();
@@ -42,7 +42,8 @@ Result<WalkedFlight> WalkedFlight::walk(TruthSource& source,
   if (flight.path_.size() < 2) {
     return Error{ErrorCode::kInvalidArgument, "flight: it has no duration"};
   }
-  flight.instants_ = (flight.path_.size() - 1) / static_cast<std::size_t>(flight.every_) + 1;
+  flight.last_ = std::min(flight.path_.size() - 1, static_cast<std::size_t>(end_ns / kPathStepNs));
+  flight.instants_ = flight.last_ / static_cast<std::size_t>(flight.every_) + 1;
   return flight;
 }
 
@@ -53,14 +54,18 @@ std::int64_t WalkedFlight::instant_ns(std::size_t index) const {
 double WalkedFlight::step_s() const { return s_from_ns(every_ * kPathStepNs); }
 
 double WalkedFlight::duration_s() const {
-  return s_from_ns(static_cast<std::int64_t>(path_.size() - 1) * kPathStepNs);
+  return s_from_ns(static_cast<std::int64_t>(last_) * kPathStepNs);
 }
 
 Pose WalkedFlight::T_world_body_at(std::int64_t t_ns) const {
   const auto last = static_cast<double>(path_.size() - 1);
-  const double at =
-      std::clamp(static_cast<double>(t_ns) / static_cast<double>(kPathStepNs), 0.0, last);
-  const auto before = std::min(static_cast<std::size_t>(at), path_.size() - 2);
+  const double at = std::max(static_cast<double>(t_ns) / static_cast<double>(kPathStepNs), 0.0);
+  if (at >= last) {
+    Pose pose = path_.back();
+    pose.translation += (at - last) * (pose.translation - path_[path_.size() - 2].translation);
+    return pose;
+  }
+  const auto before = static_cast<std::size_t>(at);
   return interpolate(path_[before], path_[before + 1], at - static_cast<double>(before));
 }
 
@@ -79,7 +84,7 @@ std::vector<AircraftState> WalkedFlight::states_around(std::int64_t t_ns,
 
 double WalkedFlight::length_m() const {
   double length = 0.0;
-  for (std::size_t i = 1; i < path_.size(); ++i) {
+  for (std::size_t i = 1; i <= last_; ++i) {
     length += (path_[i].translation - path_[i - 1].translation).head<2>().norm();
   }
   return length;

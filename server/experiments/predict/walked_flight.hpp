@@ -33,12 +33,14 @@ class WalkedFlight {
   [[nodiscard]] std::int64_t instant_ns(std::size_t index) const;
   [[nodiscard]] double step_s() const;
   [[nodiscard]] double duration_s() const;
-  /// Between the poses: linear in position, SLERP in rotation. Clamped to the flight.
+  /// Between the poses: linear in position, SLERP in rotation. Clamped to the beginning; after the
+  /// end straight on, without rotation.
   [[nodiscard]] Pose T_world_body_at(std::int64_t t_ns) const;
   /// States as CameraUnit::request needs them, without rates.
   [[nodiscard]] std::vector<AircraftState> states_around(std::int64_t t_ns,
                                                          std::int64_t half_ns,
                                                          std::int64_t raster_ns) const;
+  /// Of the flight and of up to a second after the duration that was asked for.
   [[nodiscard]] const std::vector<Pose>& path() const { return path_; }
   /// Over ground, along the path [m].
   [[nodiscard]] double length_m() const;
@@ -46,6 +48,7 @@ class WalkedFlight {
  private:
   std::int64_t every_ = 1;  ///< poses from one instant to the next
   std::size_t instants_ = 0;
+  std::size_t last_ = 0;  ///< pose of the flight
   std::vector<Pose> path_;
 };
 

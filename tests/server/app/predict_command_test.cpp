@@ -52,7 +52,7 @@ TEST_F(CommandLine, PredictRefusesWhatItCannotDo) {
   EXPECT_THAT(absent.err, HasSubstr("absent.json"));
   const Outcome camera = overfly_program({"predict", scenario_file(), "--camera", "none"});
   EXPECT_EQ(camera.exit_code, 2);
-  EXPECT_THAT(camera.err, HasSubstr("--camera = none"));
+  EXPECT_THAT(camera.err, HasSubstr("--camera = \"none\""));
   const Outcome live = overfly_program({"predict",
                                         scenario_file(),
                                         "--set",

@@ -76,11 +76,13 @@ TEST(ModelInputs, FollowFromTheFeatures) {
   features.rotation_px = 64.0;
   features.blur_px = 3.0;
   features.overlap = 0.7;
+  features.self_similarity = 0.52;
   Inputs inputs = inputs_of(features);
   EXPECT_DOUBLE_EQ(inputs[0], -2.0);
   EXPECT_DOUBLE_EQ(inputs[1], std::log(601.0));
-  EXPECT_DOUBLE_EQ(inputs[5], std::sqrt(0.1));
-  EXPECT_DOUBLE_EQ(inputs[7], 1.0 - 0.7);
+  EXPECT_DOUBLE_EQ(inputs[3], -std::log(1.02 - 0.52));
+  EXPECT_DOUBLE_EQ(inputs[5], 0.1);
+  EXPECT_NEAR(inputs[7], 0.09, 1e-12);
   EXPECT_DOUBLE_EQ(inputs[8], std::log(4.0));
   EXPECT_EQ(inputs[11], 0.0) << "the imagery's own light";
   features.sun_elevation_deg = 30.0;
