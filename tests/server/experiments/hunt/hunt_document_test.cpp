@@ -131,8 +131,8 @@ TEST(HuntDocument, ChecksEveryCornerOfTheLimits) {
   json["axes"][0]["from"] = -1;
   EXPECT_THAT(message(json), HasSubstr("flight.course.airspeed_m_s = -1"));
   json["axes"][0]["from"] = 10;
-  json["axes"][0]["to"] = 1e6;
-  EXPECT_THAT(message(json), HasSubstr("flight.course.airspeed_m_s = 1000000"));
+  json["axes"][0]["to"] = 81;  // the middle is within the limits
+  EXPECT_THAT(message(json), HasSubstr("flight.course.airspeed_m_s = 81"));
 }
 
 TEST(HuntDocument, ReadsAnAxisFromAnOption) {
