@@ -121,7 +121,9 @@ class Predictor {
     auto instants = flight_risk(camera, flight, threads_);
     if (!instants) return instants.error();
     predicted_.prediction.instants = std::move(*instants);
-    predicted_.prediction.risk = predicted_.prediction.instants.back().risk_so_far;
+    if (predicted_.prediction.duration_s <= kLongestJudgedS) {
+      predicted_.prediction.risk = predicted_.prediction.instants.back().risk_so_far;
+    }
     return {};
   }
 

@@ -12,6 +12,9 @@ namespace overfly::server::predict {
 
 /// Risks of an instant and of a place are stated for so long a time of equal conditions [s].
 inline constexpr double kRiskSpanS = 10.0;
+/// The model was fitted to flights of 10 s. It ranks parts of longer flights, but its hazards are
+/// too high to add up to the probability of a whole one.
+inline constexpr double kLongestJudgedS = 20.0;
 
 struct PredictedInstant {
   double t_s = 0.0;
@@ -53,7 +56,8 @@ struct Prediction {
   double length_m = 0.0;
   double step_s = 0.0;
   double image_width_px = 0.0;
-  double risk = 0.0;  ///< of a loss in the flight
+  /// Of a loss in the flight; empty if it is longer than kLongestJudgedS.
+  std::optional<double> risk;
   std::vector<PredictedInstant> instants;
   std::optional<RiskMap> map;
   std::vector<std::string> warnings;  ///< of world and flight

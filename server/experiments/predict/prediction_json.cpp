@@ -37,8 +37,7 @@ Json json_of(const PredictedInstant& instant) {
           {"features", json_of(instant.features)},
           {"inputs", json_of(instant.window)},
           {"contributions", json_of(instant.contributions)},
-          {"risk_10_s", instant.risk},
-          {"risk_so_far", instant.risk_so_far}};
+          {"risk_10_s", instant.risk}};
 }
 
 Json json_of(const RiskMap& map) {
@@ -70,7 +69,10 @@ Json json_of(const RiskMap& map) {
 
 Json json_from(const Prediction& prediction) {
   Json instants = Json::array();
-  for (const PredictedInstant& instant : prediction.instants) instants.push_back(json_of(instant));
+  for (const PredictedInstant& instant : prediction.instants) {
+    instants.push_back(json_of(instant));
+    if (prediction.risk) instants.back()["risk_so_far"] = instant.risk_so_far;
+  }
   return {{"scenario", prediction.scenario},
           {"title", prediction.title},
           {"camera", prediction.camera},
@@ -78,7 +80,7 @@ Json json_from(const Prediction& prediction) {
           {"duration_s", prediction.duration_s},
           {"length_m", prediction.length_m},
           {"step_s", prediction.step_s},
-          {"risk", prediction.risk},
+          {"risk", prediction.risk ? Json(*prediction.risk) : Json(nullptr)},
           {"sentences", sentences_of(prediction)},
           {"instants", instants},
           {"map", prediction.map ? json_of(*prediction.map) : Json(nullptr)},

@@ -46,10 +46,13 @@ std::string risk_figure(const Prediction& prediction) {
   risk.y_range = plot::Range{0.0, 100.0};
   risk.series = {{"of a loss within 10 s of such conditions",
                   2,
-                  over_time(prediction, [](const auto& at) { return 100.0 * at.risk; })},
-                 {"of a loss since the start", 1, over_time(prediction, [](const auto& at) {
-                    return 100.0 * at.risk_so_far;
-                  })}};
+                  over_time(prediction, [](const auto& at) { return 100.0 * at.risk; })}};
+  if (prediction.risk) {
+    risk.series.push_back(
+        {"of a loss since the start", 1, over_time(prediction, [](const auto& at) {
+           return 100.0 * at.risk_so_far;
+         })});
+  }
   risk.levels = {{100.0 * kRisky, "risky"}};
   return html::figure(
       "Time line of risk.", "Probabilities that the estimator is lost.", plot::svg_of(risk));
@@ -231,8 +234,8 @@ Image coloured_map(const RiskMap& map, const Image& ground) {
 
 Result<std::string> page_of(const Prediction& prediction, const Image& ground) {
   const std::string name = prediction.title.empty() ? prediction.scenario : prediction.title;
-  std::string page = html::page_start("Risk of " + name + " - Overfly") + "<h1>" +
-                     plot::escaped("Risk of " + name) + "</h1>\n" +
+  std::string page = html::page_start("Risk: " + name + " - Overfly") + "<h1>" +
+                     plot::escaped("Risk: " + name) + "</h1>\n" +
                      html::paragraph("Prediction by Overfly " + html::program_text() + " for " +
                                          prediction.flight + ", camera " + prediction.camera +
                                          ". Nothing was flown.",

@@ -91,6 +91,17 @@ std::string map_sentence(const RiskMap& map) {
          " km) has a risk of at least 50 % within 10 s.";
 }
 
+std::string flight_sentence(const Prediction& prediction) {
+  const std::string flight = "this flight of " + seconds(prediction.duration_s);
+  if (prediction.risk) {
+    return "The estimator is lost in " + flight + " with a probability of " +
+           percent_text(*prediction.risk) + ".";
+  }
+  return "Parts of " + flight + " are ranked by their risk of a loss within " +
+         seconds(kRiskSpanS) + "; a probability for the whole flight is known up to " +
+         seconds(kLongestJudgedS) + " only.";
+}
+
 }  // namespace
 
 std::vector<RiskyStretch> risky_stretches(const Prediction& prediction) {
@@ -148,8 +159,7 @@ double risky_share(const RiskMap& map) {
 std::vector<std::string> sentences_of(const Prediction& prediction) {
   std::vector<std::string> sentences;
   if (prediction.instants.empty()) return sentences;
-  sentences.push_back("The estimator is lost in this flight of " + seconds(prediction.duration_s) +
-                      " with a probability of " + percent_text(prediction.risk) + ".");
+  sentences.push_back(flight_sentence(prediction));
   std::vector<RiskyStretch> stretches = risky_stretches(prediction);
   const std::vector<PredictedInstant>& instants = prediction.instants;
   if (stretches.empty()) {

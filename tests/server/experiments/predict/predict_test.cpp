@@ -157,6 +157,18 @@ TEST(Predict, FollowsTheFlight) {
   EXPECT_EQ(prediction.risk, prediction.instants.back().risk_so_far);
 }
 
+TEST(Predict, JudgesNoFlightAsAWholeThatIsLongerThanThoseOfTheModel) {
+  PredictOptions options;
+  options.map.reset();
+  options.rate_hz = 0.5;
+  const Prediction prediction =
+      predict(small_scenario({"duration_s=21"}), options).value().prediction;
+  EXPECT_FALSE(prediction.risk.has_value());
+  EXPECT_TRUE(json_from(prediction).at("risk").is_null());
+  EXPECT_FALSE(json_from(prediction).at("instants").back().contains("risk_so_far"));
+  EXPECT_THAT(sentences_of(prediction)[0], StartsWith("Parts of this flight of 21.0 s are ranked"));
+}
+
 TEST(Predict, DoesNotDependOnTheNumberOfThreads) {
   const Scenario scenario = small_scenario({"duration_s=15"});
   PredictOptions options;
@@ -292,7 +304,7 @@ TEST(PredictionPage, StandsAlone) {
   scenario.title = "Low & <slow>";
   const Predicted predicted = predict(scenario, options).value();
   const std::string page = page_of(predicted.prediction, predicted.ground).value();
-  EXPECT_THAT(page, HasSubstr("<h1>Risk of Low &amp; &lt;slow&gt;</h1>"));
+  EXPECT_THAT(page, HasSubstr("<h1>Risk: Low &amp; &lt;slow&gt;</h1>"));
   EXPECT_THAT(page, HasSubstr("data:image/jpeg;base64,"));
   EXPECT_THAT(page, HasSubstr("risk [%]"));
   EXPECT_THAT(page, HasSubstr("50 to 80 %"));
