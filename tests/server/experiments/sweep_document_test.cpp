@@ -169,7 +169,7 @@ TEST(SweepFiles, AreValid) {
     }
     ++files;
   }
-  EXPECT_EQ(files, 3U);
+  EXPECT_EQ(files, 6U);
 }
 
 }  // namespace

@@ -117,6 +117,25 @@ TEST(BorderSearch, AgreesWithARecordedGrid) {
   EXPECT_EQ(found.asked, 12U);
 }
 
+/// Recorded: scenarios/sweeps/blur_envelope.json, heights of 20 to 170 m along the line, exposures
+/// of 5 to 30 ms across, at 15 m/s and (up to 20 ms) at 25 m/s.
+TEST(BorderSearch, FindsTheBorderOfARecordedGridWithAThirdOfItsFlights) {
+  const std::vector<std::vector<std::size_t>> lost_below = {{0, 0, 1, 1, 1, 1}, {2, 2, 3, 3}};
+  std::vector<GridLine> lines;
+  for (std::size_t speed = 0; speed < lost_below.size(); ++speed) {
+    for (std::size_t exposure = 0; exposure < lost_below[speed].size(); ++exposure) {
+      lines.push_back({{speed, exposure}});
+    }
+  }
+  constexpr std::size_t kHeights = 16;
+  const Survives survives = [&](const GridLine& line, std::size_t v) {
+    return v >= lost_below[line.at[0]][line.at[1]];
+  };
+  const Borders found = search(lines, kHeights, survives);
+  expect_true_borders(found, lines, kHeights, survives);
+  EXPECT_LT(3 * found.asked, kHeights * lines.size()) << found.asked;
+}
+
 TEST(BorderSearch, MarksALineWithSeveralBorders) {
   const auto lines = lines_of(2);
   const std::vector<std::string> grid = {"++++----", "+++-++--"};
