@@ -226,6 +226,8 @@ TEST_F(LiveVideo, NamesTheDeviceThatIsNone) {
   const auto none = open_live_images(address_of("v4l2:/dev/video-none"), nullptr);
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message, HasSubstr("/dev/video-none"));
+  // kUnsupported would mean that FFmpeg's library of devices was not loaded.
+  EXPECT_EQ(none.error().code, ErrorCode::kIo) << none.error().message;
   // A device, but no camera.
   const auto other = open_live_images(address_of("v4l2:/dev/null"), nullptr);
   ASSERT_FALSE(other);
