@@ -67,3 +67,26 @@ export function perFrame<T>(action: (value: T) => void): (value: T) => void {
     });
   };
 }
+
+/**
+ * Calls `action` without delay, and then at most once per frame, with the latest argument. For commands
+ * to the server, whose answer takes long enough.
+ */
+export function promptlyPerFrame<T>(action: (value: T) => void): (value: T) => void {
+  let framePending = false;
+  let waiting: { value: T } | null = null;
+  const act = (value: T) => {
+    framePending = true;
+    requestAnimationFrame(() => {
+      framePending = false;
+      const newest = waiting;
+      waiting = null;
+      if (newest !== null) act(newest.value);
+    });
+    action(value);
+  };
+  return (value) => {
+    if (framePending) waiting = { value };
+    else act(value);
+  };
+}

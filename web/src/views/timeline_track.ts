@@ -9,7 +9,7 @@ import { bandHue } from '../store/logs/log_bands';
 import type { FaultSpan } from '../store/fault_spans';
 import { tracksOf } from '../store/tracks';
 import { faultColour, kStateColours } from './colours';
-import { h, perFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
+import { h, promptlyPerFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
 import { paint } from './paint';
 import type { Context } from './view';
 
@@ -249,7 +249,7 @@ export class TimelineTrack {
   }
 
   private scrub(): void {
-    const seek = perFrame((t_ns: number) => this.context.player.seekTime(t_ns));
+    const seek = promptlyPerFrame((t_ns: number) => this.context.player.seekTime(t_ns));
     const hold = (event: PointerEvent) => {
       const { begin_ns = 0, end_ns = 0 } = this.context.store.state.clock ?? {};
       this.held_ns = Math.min(Math.max(this.timeAt(event), begin_ns), end_ns);

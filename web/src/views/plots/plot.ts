@@ -1,7 +1,7 @@
 // One plot of curves over time with a playback cursor. A click or drag seeks.
 import uPlot from 'uplot';
 import { curveStyle } from '../colours';
-import { h, perFrame, setText } from '../dom';
+import { h, promptlyPerFrame, setText } from '../dom';
 import { paint } from '../paint';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
@@ -179,7 +179,7 @@ export class Plot {
   }
 
   private seekable(over: HTMLElement): void {
-    const seek = perFrame((x: number) => this.actions.onSeek(this.plot.posToVal(x, 'x')));
+    const seek = promptlyPerFrame((x: number) => this.actions.onSeek(this.plot.posToVal(x, 'x')));
     const seekTo = (event: PointerEvent) => seek(event.clientX - over.getBoundingClientRect().left);
     over.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
