@@ -13,6 +13,8 @@ using server::PictureRequest;
 
 /// A view that was changed so recently is being moved.
 constexpr std::int64_t kViewMovesNs = 300'000'000;
+/// A scene that took longer to draw is previewed after a jump in time.
+constexpr std::int64_t kLongDrawingNs = 30'000'000;
 /// Pictures are not reduced below this quality, unless the client asks for it.
 constexpr int kLeastQuality = 30;
 
@@ -120,10 +122,30 @@ bool PictureStreams::view_moves(const Stream& stream, std::int64_t now_ns) const
   return now_ns - view->second.changed_ns < kViewMovesNs;
 }
 
+bool PictureStreams::wants_preview(const Stream& stream) {
+  // The other pictures are made in the camera's size, and then reduced.
+  return stream.jumped && !stream.moving && stream.drawing_ns > kLongDrawingNs &&
+         kind_of(stream.request.name) == PictureRequest::Kind::kScene;
+}
+
+void PictureStreams::show_again() {
+  ++change_;
+  for (Stream& stream : streams_) stream.jumped = false;
+}
+
+void PictureStreams::show_after_jump() {
+  ++change_;
+  for (Stream& stream : streams_) stream.jumped = true;
+}
+
 /// While processor time is short, because a real-time flight limits the pictures, video is made
 /// only for a client that needs it: it takes several times the time of a JPEG.
 void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const {
-  stream->reduced = false;
+  stream->reduced = stream->preview = wants_preview(*stream);
+  if (stream->preview) {
+    request->scene.width_px >>= 1;
+    request->scene.height_px >>= 1;
+  }
   if (!stream->moving) return;
   const Reduction reduction = reduction_at(link_.reduction());
   stream->reduced = request->sparing = link_.reduction() > 0;
@@ -161,7 +183,7 @@ bool PictureStreams::request_one(Stream* stream,
     count_unshown(stream);
   }
   stream->moving = playing || view_moves(*stream, now_ns);
-  const bool full = !stream->moving && stream->reduced;
+  const bool full = !stream->moving && stream->reduced && !wants_preview(*stream);
   stream->slot.want({instant->frame, change_of(*stream), others, full});
   const std::size_t bytes = expected_bytes(*stream);
   if (acknowledges_ && stream->slot.due(now_ns)) {
@@ -177,6 +199,7 @@ bool PictureStreams::request_one(Stream* stream,
   stream->drawn = *key;
   const bool was_reduced = stream->reduced;
   fit_to_link(stream, &*request);
+  stream->jumped = false;
   // So that the same picture is not requested once more.
   if (full) stream->reduced = was_reduced;
   port->draw({stream->id, stream->ticket}, *request);
@@ -228,7 +251,8 @@ PictureStreams::Stream* PictureStreams::find(const PictureTicket& ticket) {
 
 void PictureStreams::ready(const PictureTicket& ticket,
                            const Result<server::Picture>& picture,
-                           ViewerPort* port) {
+                           ViewerPort* port,
+                           std::int64_t now_ns) {
   Stream* stream = find(ticket);
   if (stream == nullptr) return;
   PictureKey shown = stream->drawn;
@@ -242,6 +266,7 @@ void PictureStreams::ready(const PictureTicket& ticket,
     return;
   }
   stream->error_sent.clear();
+  if (stream->still && !stream->preview) stream->drawing_ns = now_ns - stream->requested_ns;
   stream->slot.answered_with(picture->frame);
   stream->slot.sending();
   stream->sent = shown;

@@ -53,7 +53,10 @@ class PictureStreams {
   /// The maximum rate of each stream; empty = none. @return true if it changed
   bool set_limit_hz(std::optional<double> limit_hz);
   /// Makes every stream send the picture of the present instant again.
-  void show_again() { ++change_; }
+  void show_again();
+  /// As show_again(), after a jump in time: a scene that takes long to draw is sent in half the
+  /// size first, and then completely.
+  void show_after_jump();
 
   /// Requests every picture that is due.
   /// @param instants  of the watched runs that have frames
@@ -63,7 +66,10 @@ class PictureStreams {
             ViewerPort* port,
             std::int64_t now_ns);
   /// Sends a picture that was drawn, or reports to the client why it was not.
-  void ready(const PictureTicket& ticket, const Result<server::Picture>& picture, ViewerPort* port);
+  void ready(const PictureTicket& ticket,
+             const Result<server::Picture>& picture,
+             ViewerPort* port,
+             std::int64_t now_ns);
   void sent(const PictureTicket& ticket);
 
   /// True if a picture waits only for its time, or a view has just been moved.
@@ -90,6 +96,9 @@ class PictureStreams {
     std::optional<std::uint32_t> shown;  ///< sequence number of the newest that the client shows
     std::int64_t requested_ns = 0;       ///< when the newest was requested
     bool still = true;                   ///< the one requested last was to rest
+    bool jumped = false;                 ///< the next one is the first after a jump
+    bool preview = false;                ///< the one requested last is in half the size
+    std::int64_t drawing_ns = 0;         ///< of the last one that rests, in full detail
     std::size_t still_bytes = SendWindow::kLeastBytes;  ///< size of the last one that rests
     std::size_t moving_bytes = 0;  ///< size of the last one that moves; 0 = none yet
     std::uint64_t video_sent = 0;  ///< video pictures
@@ -112,6 +121,8 @@ class PictureStreams {
   std::vector<Stream*> in_turn();
   /// Reduces a moving picture, and chooses its coding.
   void fit_to_link(Stream* stream, server::PictureRequest* request) const;
+  /// Whether its next picture is to be drawn in half the size, to be there sooner.
+  static bool wants_preview(const Stream& stream);
   [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
   static void count_unshown(Stream* stream);
   /// Adds the other runs that a scene shows. @return the sum of their frames

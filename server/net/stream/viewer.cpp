@@ -243,7 +243,7 @@ Status Viewer::seek(const SeekCommand& command) {
   }
   clock_.seek(t_ns);
   playback_due_ = true;
-  pictures_.show_again();
+  pictures_.show_after_jump();
   return {};
 }
 
@@ -341,7 +341,7 @@ void Viewer::pump_pictures(std::int64_t now_ns) {
 void Viewer::picture_ready(const PictureTicket& ticket,
                            const Result<server::Picture>& picture,
                            std::int64_t now_ns) {
-  pictures_.ready(ticket, picture, &port_);
+  pictures_.ready(ticket, picture, &port_, now_ns);
   tick(now_ns);
 }
 

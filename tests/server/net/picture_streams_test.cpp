@@ -37,6 +37,16 @@ class PictureStreamsTest : public ::testing::Test {
     if (port_.drawn.empty()) return std::nullopt;
     return port_.drawn.back().second;
   }
+  void subscribe_scene() { streams_.subscribe({{StreamRequest{"r", "scene"}}, true}); }
+  /// Draws and shows a scene at rest. @return the width it was asked for
+  int show_scene(std::int64_t drawing_ns) {
+    const auto request = next(false);
+    if (!request) return 0;
+    drawing_ns_ = drawing_ns;
+    send();
+    show_all();
+    return request->scene.width_px;
+  }
   /// Draws and sends what was asked for. @return its header
   PictureHeader send(PictureCoding coding = PictureCoding::kJpeg, bool key = true) {
     const PictureTicket ticket = port_.drawn.back().first;
@@ -48,7 +58,7 @@ class PictureStreamsTest : public ::testing::Test {
     picture.coding = coding;
     picture.key = key;
     picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes_, std::uint8_t{1});
-    streams_.ready(ticket, picture, &port_);
+    streams_.ready(ticket, picture, &port_, now_ns_ + drawing_ns_);
     streams_.sent(ticket);
     const auto header = decode_picture_header(port_.binaries.back());
     return header.value_or(PictureHeader{});
@@ -80,7 +90,8 @@ class PictureStreamsTest : public ::testing::Test {
   PictureStreams streams_;
   std::int64_t frame_ = 0;
   std::int64_t now_ns_ = 1'000'000'000;
-  std::size_t bytes_ = 3;  ///< of a picture
+  std::size_t bytes_ = 3;        ///< of a picture
+  std::int64_t drawing_ns_ = 0;  ///< until a picture is drawn
 };
 
 TEST_F(PictureStreamsTest, AsksForVideoOnceAPictureIsThereAndMoves) {
@@ -134,6 +145,57 @@ TEST_F(PictureStreamsTest, SendsTheLastPictureAgainInFullWhenItComesToRest) {
   EXPECT_EQ(send().encoding, PictureEncoding::kJpegColour);
   show_all();
   EXPECT_FALSE(next(false)) << "once";
+}
+
+constexpr std::int64_t kQuickNs = 5'000'000;
+constexpr std::int64_t kLongNs = 60'000'000;
+
+TEST_F(PictureStreamsTest, PreviewsASceneThatTakesLongAfterAJump) {
+  subscribe_scene();
+  const int width_px = show_scene(kLongNs);
+  ASSERT_GT(width_px, 100);
+  for (int jump = 0; jump < 3; ++jump) {
+    streams_.show_after_jump();
+    EXPECT_EQ(show_scene(kQuickNs), width_px / 2) << jump;
+    EXPECT_EQ(show_scene(kLongNs), width_px) << jump;
+    EXPECT_FALSE(next(false)) << "once";
+  }
+}
+
+TEST_F(PictureStreamsTest, PreviewsAgainIfTheNextJumpComesBeforeTheWholeScene) {
+  subscribe_scene();
+  const int width_px = show_scene(kLongNs);
+  streams_.show_after_jump();
+  EXPECT_EQ(show_scene(kQuickNs), width_px / 2);
+  streams_.show_after_jump();
+  EXPECT_EQ(show_scene(kQuickNs), width_px / 2);
+  EXPECT_EQ(show_scene(kLongNs), width_px);
+}
+
+TEST_F(PictureStreamsTest, DoesNotPreviewASceneThatIsDrawnQuickly) {
+  subscribe_scene();
+  const int width_px = show_scene(kQuickNs);
+  streams_.show_after_jump();
+  EXPECT_EQ(show_scene(kQuickNs), width_px);
+  EXPECT_FALSE(next(false));
+}
+
+TEST_F(PictureStreamsTest, DoesNotPreviewSteps) {
+  subscribe_scene();
+  const int width_px = show_scene(kLongNs);
+  streams_.show_after_jump();
+  streams_.show_again();
+  EXPECT_EQ(show_scene(kLongNs), width_px);
+}
+
+TEST_F(PictureStreamsTest, DoesNotPreviewTheCamera) {
+  subscribe(false, true);
+  const int width_px = next(false)->max_width_px;
+  drawing_ns_ = kLongNs;
+  send();
+  show_all();
+  streams_.show_after_jump();
+  EXPECT_EQ(next(false)->max_width_px, width_px);
 }
 
 TEST_F(PictureStreamsTest, BeginsAnewWhenTheClientLostAPicture) {
