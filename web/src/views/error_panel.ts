@@ -109,10 +109,10 @@ export class ErrorPanel implements View {
         {},
         stateRow(tracks),
         this.outcomeRow(table, tracks),
-        ...table.rows.map(({ cells, cellHints, ...row }) =>
+        ...table.rows.map(({ cells, cellHints, bad, ...row }) =>
           tableRow(
             row,
-            cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '')),
+            cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '', bad?.[i] === true)),
           ),
         ),
         textureRow(textures),
@@ -233,11 +233,14 @@ function textureRow(textures: Texture[]): HTMLElement {
   return tableRow(row, cells);
 }
 
-function figureCell(text: string, hint: string): HTMLElement {
-  return hint === '' ? h('td', {}, text) : h('td', { class: 'bad', title: hint }, text);
+function figureCell(text: string, hint: string, bad: boolean): HTMLElement {
+  return h('td', { class: bad ? 'bad' : '', title: hint === '' ? undefined : hint }, text);
 }
 
-function tableRow(row: Omit<ErrorRow, 'cells' | 'cellHints'>, cells: HTMLElement[]): HTMLElement {
+function tableRow(
+  row: Omit<ErrorRow, 'cells' | 'cellHints' | 'bad'>,
+  cells: HTMLElement[],
+): HTMLElement {
   const head = h('th', { scope: 'row', title: row.hint }, row.label);
   if (row.unit !== '') head.append(h('span', { class: 'unit' }, row.unit));
   return h('tr', { 'data-row': row.key }, head, ...cells);

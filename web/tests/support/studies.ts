@@ -80,7 +80,7 @@ export function explanation(fields: Partial<Explanation> = {}): Explanation {
     sentences: [],
     flights: [],
     untried: [],
-    words: { blur: 'motion blur', noise: 'noise' },
+    words: { blur: 'the blur of the images', noise: 'the noise of the sensor' },
     ...fields,
   };
 }

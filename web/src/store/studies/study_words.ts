@@ -63,7 +63,7 @@ export function causeRows(explanation: Explanation): CauseRow[] {
     .map(({ changes }) => changes[0]?.cause ?? '');
   const causes = [...new Set([...named, ...alone])];
   return causes.map((cause) => ({
-    words: words[cause] ?? cause,
+    words: plainWords(words[cause] ?? cause),
     necessary: necessary.includes(cause) ? 'yes' : alone.includes(cause) ? 'no' : '',
     sufficient: sufficient.includes(cause)
       ? 'yes'
@@ -72,6 +72,12 @@ export function causeRows(explanation: Explanation): CauseRow[] {
         : '',
     margin: margin?.cause === cause ? marginText(margin) : '',
   }));
+}
+
+/** "the blur of the images" -> "Blur of the images" */
+export function plainWords(words: string): string {
+  const bare = words.replace(/^the /, '');
+  return bare.charAt(0).toUpperCase() + bare.slice(1);
 }
 
 /** "survives 12.5 % of it, fails at 25 %" */

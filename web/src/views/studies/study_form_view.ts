@@ -4,6 +4,7 @@ import { huntFieldsOf, namesAt } from '../../store/studies/hunt_fields';
 import type { AxisRow, StudyFormState } from '../../store/studies/study_form';
 import { failedEstimators } from '../../store/studies/study_form';
 import { formatDate } from '../../store/format';
+import { plainWords } from '../../store/studies/study_words';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
 
@@ -110,7 +111,7 @@ export class StudyFormView {
       return [h('p', { class: 'sweep-form-description' }, 'No estimator has failed in a run yet.')];
     }
     const boxes = (limits?.explain.causes ?? []).map(({ name, words }) =>
-      check(words, `cause-${name}`, form.causes.has(name), (ticked) =>
+      check(plainWords(words), `cause-${name}`, form.causes.has(name), (ticked) =>
         actions.setCause(name, ticked),
       ),
     );

@@ -14,6 +14,7 @@ import {
   causeRows,
   huntedText,
   huntSentence,
+  plainWords,
   reflightText,
   severityOf,
   spanOf,
@@ -51,7 +52,7 @@ function explanationParts(context: Context, explanation: Explanation): HTMLEleme
     ),
   );
   const untried = explanation.untried.map(({ cause, reason }) =>
-    h('li', {}, `${explanation.words[cause] ?? cause}: ${reason}`),
+    h('li', {}, `${plainWords(explanation.words[cause] ?? cause)}: ${reason}`),
   );
   return [
     sentences(explanation.sentences),

@@ -37,12 +37,12 @@ describe('study words', () => {
     });
     expect(causeRows(found)).toEqual([
       {
-        words: 'motion blur',
+        words: 'Blur of the images',
         necessary: 'yes',
         sufficient: 'no',
         margin: 'survives 12.5 % of it, fails at 25 %',
       },
-      { words: 'noise', necessary: 'no', sufficient: '', margin: '' },
+      { words: 'Noise of the sensor', necessary: 'no', sufficient: '', margin: '' },
     ]);
     const alone = explanation({ sufficient: ['noise'] });
     expect(causeRows(alone)[0]).toMatchObject({ necessary: '', sufficient: 'yes' });
