@@ -63,6 +63,12 @@ describe('studies', { skip, timeout: 900_000 }, () => {
   const role = (name) => page.locator(`[data-role=${name}]`);
   const state = (text, timeout = kPatience_ms) =>
     page.locator('[data-role=study-state]', { hasText: text }).waitFor({ timeout });
+  /** Waits until the study that was started last, by its title, is complete. */
+  const done = (title) =>
+    page
+      .locator('.sweep-title h3', { hasText: title })
+      .locator('[data-role=study-state]', { hasText: 'done' })
+      .waitFor({ timeout: kPatience_ms });
   const chosen = () =>
     page.locator('.study-page .log-row[aria-current=true] [data-study]').getAttribute('data-study');
 
@@ -93,7 +99,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     });
     await dashboard.screenshot('explain_running_1280x800');
     studies.explain = await chosen();
-    await state('done');
+    await done('Why feature failed');
     const row = page.locator('[data-role=study-causes] tr', { hasText: 'Injected faults' });
     assert.deepEqual((await row.locator('td').allInnerTexts()).slice(0, 2), ['yes', 'yes']);
     assert.match(await role('study-sentences').innerText(), /injected faults/);
@@ -130,7 +136,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await role('study-map_km').fill('0.6');
     await dashboard.screenshot('predict_form_1280x800');
     await role('start-study').click();
-    await state('done');
+    await done('Risk: A short course');
     studies.predict = await chosen();
     const frame = page.frameLocator('[data-role=study-page]');
     await frame.locator('h1', { hasText: 'Risk: A short course' }).waitFor();
@@ -152,7 +158,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await role('study-all').check();
     await dashboard.screenshot('hunt_form_1280x800');
     await role('start-study').click();
-    await state('done');
+    await done('Worst flight: A short course');
     studies.hunt = await chosen();
     const rows = page.locator('[data-role=study-hunted] tbody tr');
     assert.equal(await rows.count(), 3);

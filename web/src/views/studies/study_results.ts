@@ -192,7 +192,7 @@ function predictionParts(context: Context, name: string, prediction: Prediction)
       ),
       // Without scripts, forms and an origin of its own; the server's answer says so too.
       h('iframe', {
-        src: address,
+        src: `${address}#time-line`,
         sandbox: '',
         title: 'Time line of risk, map and features',
         'data-role': 'study-page',
