@@ -81,6 +81,8 @@ describe('studies', { skip, timeout: 900_000 }, () => {
 
   step('offers to explain a run whose estimator failed, in the list and beside its errors', async () => {
     await page.locator('.run[data-run=planted] [data-role=explain]').waitFor();
+    await role('explain-estimator').first().waitFor();
+    await dashboard.screenshot('failed_run_1280x800');
     await role('explain-estimator').first().click();
     await page.locator('.study-form h3', { hasText: 'Explain why' }).waitFor();
     assert.equal(await role('study-run').inputValue(), 'planted');

@@ -360,11 +360,13 @@ Status StudyService::cancel(const std::string& name) {
 Status StudyService::remove(const std::string& name) {
   const Result<StudyFolder> folder = folder_of(name);
   if (!folder) return folder.error();
-  // Held, so that it is not begun again meanwhile.
-  const std::lock_guard lock(mutex_);
-  if (active(name)) {
-    return Error{ErrorCode::kConflict, "study \"" + name + "\" has not ended: cancel it first"};
+  {
+    const std::lock_guard lock(mutex_);
+    if (active(name)) {
+      return Error{ErrorCode::kConflict, "study \"" + name + "\" has not ended: cancel it first"};
+    }
   }
+  // If it is begun again meanwhile, its process finds no folder, or this call finds it locked.
   return remove_run_folder(folder->path());
 }
 

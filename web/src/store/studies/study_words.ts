@@ -123,7 +123,7 @@ export function huntSentence({ estimator, flights, flights_to_failure, exhausted
   const all = flights.length === 1 ? 'the one flight' : `all ${flights.length} flights`;
   const found =
     flights_to_failure === null
-      ? `${estimator} survives ${all} so far.`
+      ? `${estimator} survives ${all}.`
       : `Flight ${flights_to_failure} is the first one that ${estimator} fails.`;
   return exhausted ? `${found} Every point of the axes was flown.` : found;
 }

@@ -1,12 +1,13 @@
 // Prepares a study: the run or the scenario, and its options.
 import type { StudyLimits, StudyRange } from '../../protocol/study_types';
-import { huntFieldsOf, namesAt } from '../../store/studies/hunt_fields';
-import type { AxisRow, StudyFormState } from '../../store/studies/study_form';
+import { namesAt } from '../../store/studies/hunt_fields';
+import type { StudyFormState } from '../../store/studies/study_form';
 import { failedEstimators } from '../../store/studies/study_form';
 import { formatDate } from '../../store/format';
 import { plainWords } from '../../store/studies/study_words';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
+import { huntAxes } from './hunt_axes';
 
 const kTitles = {
   explain: 'Explain why an estimator failed',
@@ -22,7 +23,6 @@ const kNotes = {
   hunt: 'Flights within the limits are chosen by how well those before were survived, until one fails.',
 } as const;
 
-const kFieldList = 'study-fields';
 /** Value of the option for the launcher's scenario with its changes. */
 const kAsInLaunch = '';
 
@@ -207,7 +207,7 @@ export class StudyFormView {
           ),
         ),
       ),
-      this.axes(form, most),
+      huntAxes(this.context, form, most),
       row(
         this.number(form, 'flights', 'Flights at most', limits?.hunt.flights),
         this.number(form, 'repeats', 'Seeds of each point', limits?.hunt.repeats),
@@ -219,87 +219,6 @@ export class StudyFormView {
         ),
       ),
     ];
-  }
-
-  private axes(form: StudyFormState, most: number): HTMLElement {
-    const { form: actions } = this.context.studies;
-    const known = huntFieldsOf(form.document ?? {});
-    const heads = ['Field of the scenario', 'From', 'To', 'Step', 'Unit', ''];
-    return h(
-      'div',
-      { class: 'study-wide' },
-      h(
-        'datalist',
-        { id: kFieldList },
-        ...known.map(({ path, label }) => h('option', { value: path }, label)),
-      ),
-      h(
-        'table',
-        { class: 'study-axes', 'data-role': 'study-axes' },
-        h('thead', {}, h('tr', {}, ...heads.map((text) => h('th', { scope: 'col' }, text)))),
-        h(
-          'tbody',
-          {},
-          ...form.axes.map((axis, i) => {
-            const unit = known.find(({ path }) => path === axis.path)?.unit ?? '';
-            return h(
-              'tr',
-              {},
-              h('td', {}, this.axisText(axis, i, 'path')),
-              h('td', {}, this.axisText(axis, i, 'from')),
-              h('td', {}, this.axisText(axis, i, 'to')),
-              h('td', {}, this.axisText(axis, i, 'step')),
-              h('td', { class: 'unit' }, unit),
-              h(
-                'td',
-                {},
-                h(
-                  'button',
-                  {
-                    class: 'icon-button',
-                    'aria-label': `Leave out ${axis.path}`,
-                    title: 'Leave out this field',
-                    onclick: () => actions.removeAxis(i),
-                  },
-                  '×',
-                ),
-              ),
-            );
-          }),
-        ),
-      ),
-      h(
-        'button',
-        {
-          class: 'secondary',
-          'data-role': 'add-axis',
-          disabled: form.axes.length >= most || form.document === null,
-          title: `At most ${most} fields`,
-          onclick: () => actions.addAxis(),
-        },
-        'Add a field',
-      ),
-    );
-  }
-
-  private axisText(axis: AxisRow, index: number, name: keyof AxisRow): HTMLElement {
-    const { form: actions } = this.context.studies;
-    const input = h('input', {
-      type: 'text',
-      inputmode: name === 'path' ? 'text' : 'decimal',
-      class: name === 'path' ? 'study-path' : 'study-number',
-      list: name === 'path' ? kFieldList : undefined,
-      value: axis[name],
-      placeholder: name === 'step' ? 'any' : '',
-      'aria-label': `${name} of field ${index + 1}`,
-      'data-role': `axis-${index}-${name}`,
-      autocomplete: 'off',
-      spellcheck: 'false',
-    });
-    // A field that is chosen brings its limits: only when it is complete.
-    const event = name === 'path' ? 'change' : 'input';
-    input.addEventListener(event, () => actions.setAxis(index, { [name]: input.value }));
-    return input;
   }
 
   // ---- parts -----------------------------------------------------------------------------------

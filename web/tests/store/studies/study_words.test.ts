@@ -83,7 +83,7 @@ describe('study words', () => {
     };
     expect(huntSentence(result)).toBe('No flight is over yet.');
     expect(huntSentence({ ...result, flights: [hunted(0.5), hunted(0.4)] })).toBe(
-      'feature survives all 2 flights so far.',
+      'feature survives all 2 flights.',
     );
     const failed = { ...result, flights: [hunted(-0.5)], flights_to_failure: 1, exhausted: true };
     expect(huntSentence(failed)).toBe(
