@@ -194,10 +194,19 @@ class Preparation {
                                            folder_.hunt_file().parent_path(),
                                            asks.estimator,
                                            {runs_.data_folders().sources, check_flight});
-    if (!hunt) return hunt.error();
+    if (!hunt) return without_input(hunt.error());
     record_.estimator = hunt->estimator;
     add_option("--estimator", hunt->estimator);
     return {};
+  }
+
+  /// The input is a file of this machine, which a client needs not know.
+  [[nodiscard]] Error without_input(Error error) const {
+    const std::string file = folder_.scenario_file().string() + ": ";
+    for (std::size_t at = 0; (at = error.message.find(file, at)) != std::string::npos;) {
+      error.message.erase(at, file.size());
+    }
+    return error;
   }
 
   [[nodiscard]] Json hunt_document(const HuntRequest& asks) const {

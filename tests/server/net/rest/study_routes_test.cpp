@@ -205,7 +205,7 @@ TEST_F(StudyRoutesTest, NamesTheFieldThatIsAtFault) {
       {hunt(axis({{"values", {1, 2}}})), "axes.0.values: is not a known field"},
       {hunt(axis({{"path", ""}})), "axes.0.path"},
       {hunt(axis({{"path", "estimators.0.command"}})), "estimators.0"},
-      {hunt(axis({{"from", -50}})), "flight.course.height_agl_m = -50"},
+      {hunt(axis({{"from", -50}})), "flight.course.height_agl_m = 15.0: must be in [20, 3000]"},
       {hunt({{"flights", 2}, {"repeats", 3}}), "flights: must be at least repeats = 3"},
       {hunt({{"estimator", "none"}}), "estimator = none: must be one of perfect"},
   };
@@ -213,6 +213,7 @@ TEST_F(StudyRoutesTest, NamesTheFieldThatIsAtFault) {
     const Answer answer = start(request);
     EXPECT_EQ(answer.status, 400) << request << answer.body;
     EXPECT_THAT(answer.body, HasSubstr(text)) << request;
+    EXPECT_THAT(answer.body, Not(HasSubstr("scenario.json"))) << "a file of this machine";
   }
   EXPECT_EQ(ask(server_->port(), "POST", kRoute, "{", kJson).status, 400);
   EXPECT_EQ(ask(server_->port(), "POST", kRoute, "{}", {}).status, 415);
