@@ -29,4 +29,4 @@ HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
     | curl -fsS -K - http://127.0.0.1:8480/api/v1/health || exit 1
 # The first process of a container must reap the orphans of estimators.
 ENTRYPOINT ["tini", "-s", "--", "/opt/overfly/build/release/overfly"]
-CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--sweeps", "/data/sweeps", "--uploads", "/data/uploads", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]
+CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--sweeps", "/data/sweeps", "--studies", "/data/studies", "--uploads", "/data/uploads", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]

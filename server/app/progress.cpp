@@ -5,19 +5,31 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <utility>
+
+#include "server/files/whole_file.hpp"
 
 namespace overfly::app {
 
-ProgressDisplay::ProgressDisplay(bool quiet)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressDisplay::ProgressDisplay(bool quiet, std::filesystem::path file)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), file_(std::move(file)) {}
 
 ProgressDisplay::~ProgressDisplay() {
   if (open_line_) std::cerr << "\n";
 }
 
+void ProgressDisplay::write_file(double share, const std::string& text) {
+  const auto now = std::chrono::steady_clock::now();
+  if (share < 1.0 && now - last_written_ < std::chrono::milliseconds(200)) return;
+  last_written_ = now;
+  // The work goes on without it: who reads the file sees that it stands still.
+  (void)server::write_json(file_, {{"share", share}, {"text", text}});
+}
+
 void ProgressDisplay::show(double share, const std::string& text) {
-  if (quiet_) return;
   const double done = std::clamp(share, 0.0, 1.0);
+  if (!file_.empty()) write_file(done, text);
+  if (quiet_) return;
   const int percent = static_cast<int>(std::floor(100.0 * done));
   if (!terminal_) {
     // One line for each tenth keeps a log short.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 
 namespace overfly::app {
@@ -9,7 +10,8 @@ namespace overfly::app {
 /// Writes to standard error, so that standard output contains only results.
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(bool quiet);
+  /// @param file  gets {"share","text"}, also in quiet mode; empty = none
+  explicit ProgressDisplay(bool quiet, std::filesystem::path file = {});
   ~ProgressDisplay();  ///< ends the bar's line
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -25,8 +27,12 @@ class ProgressDisplay {
   void warn(const std::string& text);
 
  private:
+  void write_file(double share, const std::string& text);
+
   bool quiet_;
   bool terminal_;
+  std::filesystem::path file_;
+  std::chrono::steady_clock::time_point last_written_{};
   bool open_line_ = false;
   int last_tenth_ = -1;
   std::chrono::steady_clock::time_point last_shown_{};

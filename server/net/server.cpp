@@ -60,6 +60,7 @@ Server::~Server() {
     impl_->context->readers.stop();
     impl_->context->drawers.stop();
     impl_->context->sweeps.stop();
+    impl_->context->studies.stop();
   }
   impl_->workers.stop();
   impl_->connections.stop();
@@ -97,6 +98,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers};
   add_sweep_routes(&context->router, sweeps);
   add_sweep_start_routes(&context->router, sweeps);
+  add_study_routes(&context->router, {&context->studies, readers});
   add_calibration_session_routes(&context->router, &context->calibrations);
   add_calibration_routes(&context->router, &context->calibrations);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {

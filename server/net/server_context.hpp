@@ -12,6 +12,7 @@
 #include "core/barrier.hpp"
 #include "server/calibration/session/calibration_desk.hpp"
 #include "server/experiments/service/sweep_service.hpp"
+#include "server/experiments/studies/study_service.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/maps/map_service.hpp"
 #include "server/net/http/allowed_hosts.hpp"
@@ -69,6 +70,7 @@ struct ServerContext {
         trajectories(logs, [this](const std::string& id) { return runs.folder(id); }),
         calibrations(calibration_options()),
         sweeps(run_manager, sweep_options()),
+        studies(run_manager, study_options()),
         maps(run_manager),
         connections(server_options.limits.connections) {}
 
@@ -93,6 +95,16 @@ struct ServerContext {
       log(level.c_str(), text);
     };
     return sweep;
+  }
+
+  [[nodiscard]] server::experiments::StudyServiceOptions study_options() {
+    server::experiments::StudyServiceOptions study;
+    study.program = options.program;
+    study.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
+    study.log = [this](const std::string& level, const std::string& text) {
+      log(level.c_str(), text);
+    };
+    return study;
   }
 
   /// Never throws, since it is called from exception handlers.
@@ -134,6 +146,7 @@ struct ServerContext {
   server::TrajectoryLibrary trajectories;
   server::CalibrationDesk calibrations;
   server::experiments::SweepService sweeps;
+  server::experiments::StudyService studies;
   /// Reads flight logs, which can take minutes, without keeping other requests waiting.
   ReadingThreads readers{[this](const std::string& what) { log("error", what); }};
   server::MapService maps;

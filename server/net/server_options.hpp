@@ -42,7 +42,7 @@ struct ServerOptions {
   /// Where uploaded flight logs are kept; empty = no uploads. Scenarios may name its files only if
   /// it is one of the run manager's data folders.
   std::filesystem::path uploads_folder;
-  /// This program, which flies the single scenarios of sweeps.
+  /// This program, which flies the single scenarios of sweeps and makes studies.
   std::filesystem::path program = "/proc/self/exe";
   /// Live cameras that calibrations may open.
   std::vector<server::LiveAddress> cameras;

@@ -39,7 +39,7 @@ MemoryBudget budget_of(const RunManagerOptions& options) {
 
 ManagedRuns::ManagedRuns(RunManagerOptions manager_options)
     : options(std::move(manager_options)),
-      places(options.runs_folder, options.sweeps_folder),
+      places(options.runs_folder, {options.sweeps_folder, options.studies_folder}),
       library({options.scenarios_folder,
                options.saved_scenarios_folder,
                options.allow_commands,
@@ -72,7 +72,9 @@ DataFolders ManagedRuns::data_folders() const {
   data.folders.insert(
       data.folders.end(), options.data_folders->begin(), options.data_folders->end());
   data.closed = {options.runs_folder};
-  if (!options.sweeps_folder.empty()) data.closed.push_back(options.sweeps_folder);
+  for (const std::filesystem::path& folder : {options.sweeps_folder, options.studies_folder}) {
+    if (!folder.empty()) data.closed.push_back(folder);
+  }
   data.sources = SourcePolicy::inside(data.folders, data.closed);
   return data;
 }

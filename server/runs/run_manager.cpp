@@ -111,7 +111,7 @@ RunList RunManager::runs() const { return impl_->list(); }
 
 Result<RunInfo> RunManager::run(const std::string& id) const {
   if (std::optional<RunInfo> known = impl_->known_info(id)) return *known;
-  if (!is_plain_name(id) || !impl_->places.in_sweep(id)) return impl_->index.run(id);
+  if (!is_plain_name(id) || !impl_->places.in_group(id)) return impl_->index.run(id);
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
   Result<RunInfo> info = read_listed_run(*place);
@@ -142,8 +142,8 @@ Status RunManager::remove(const std::string& id) {
   if (impl_->forget_unflown(id)) return {};
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
-  if (impl_->places.in_sweep(id)) {
-    return Error{ErrorCode::kConflict, "run \"" + id + "\" belongs to a sweep"};
+  if (impl_->places.in_group(id)) {
+    return Error{ErrorCode::kConflict, "run \"" + id + "\" belongs to a sweep or a study"};
   }
   if (Status status = remove_run_folder(*place); !status) return status;
   impl_->forget(id);
@@ -215,6 +215,7 @@ Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
 }
 
 const fs::path& RunManager::sweeps_folder() const { return impl_->options.sweeps_folder; }
+const fs::path& RunManager::studies_folder() const { return impl_->options.studies_folder; }
 
 PictureRate& RunManager::picture_rate() { return impl_->picture_rate; }
 

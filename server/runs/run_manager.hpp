@@ -82,7 +82,7 @@ class RunManager {
   Status cancel(const std::string& id);
   /// Deletes the folder. If several threads call it at the same time, one succeeds.
   /// Errors: kNotFound; kConflict while it runs, while another process uses it, and for a run of a
-  /// sweep.
+  /// sweep or a study.
   Status remove(const std::string& id);
   /// Replaces what people wrote about a run.
   /// Errors: as write_notes; kNotFound; kConflict before the run has ended.
@@ -104,6 +104,8 @@ class RunManager {
       const std::string& id, const std::function<bool()>& cancelled = {});
   /// RunManagerOptions::sweeps_folder
   [[nodiscard]] const std::filesystem::path& sweeps_folder() const;
+  /// RunManagerOptions::studies_folder
+  [[nodiscard]] const std::filesystem::path& studies_folder() const;
   [[nodiscard]] const RendererFactory& renderer_factory() const;
   /// Rate limit of pictures for viewers during flights.
   [[nodiscard]] PictureRate& picture_rate();

@@ -20,6 +20,8 @@ struct RunManagerOptions {
   std::filesystem::path saved_scenarios_folder;
   /// Folders of sweeps, whose runs are shown under the ids SWEEP.RUN; empty = none are.
   std::filesystem::path sweeps_folder;
+  /// Folders of studies, whose runs are shown under the ids STUDY.RUN; empty = none are made.
+  std::filesystem::path studies_folder;
   RendererFactory renderer_factory;
   int max_parallel_runs = 1;           ///< further runs wait in a queue
   std::size_t max_waiting_runs = 100;  ///< further runs are refused
@@ -30,7 +32,7 @@ struct RunManagerOptions {
   /// Links to live vehicles that may be opened, as LinkAddress::text.
   std::vector<std::string> allowed_links;
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
-  /// never the folders of runs and sweeps. Without a value any regular file may be named.
+  /// never the folders of runs, sweeps and studies. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
 };
 

@@ -1,4 +1,4 @@
-// Takes the pictures of docs/DASHBOARD.md and README.md: flies two short flights, opens each layout
+// Takes the pictures of docs/DASHBOARD.md and README.md: flies three short flights, opens each layout
 // and page, and saves what it shows. Run by scripts/screenshots.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';
@@ -14,6 +14,21 @@ const kFlights = [
   { id: '20260101-000001-calm', fields: ['flight.course.airspeed_m_s=15'] },
   { id: '20260101-000002-fast', fields: ['flight.course.airspeed_m_s=25'] },
 ];
+/** A flight whose estimator is lost. */
+const kLost = {
+  id: '20260101-000000-lost',
+  fields: [
+    'title=A blackout in the turn',
+    'duration_s=8',
+    'flight.course.leg_length_m=100',
+    'camera.width_px=320',
+    'camera.height_px=240',
+    'camera.rate_hz=16',
+    'camera.sensor.shot_noise=true',
+    'camera.sensor.motion_blur=true',
+    'faults=[{"kind":"blackout","at_s":4,"duration_s":3}]',
+  ],
+};
 const kDuration_s = 70;
 const kInstant_s = 55;
 
@@ -25,6 +40,7 @@ function fly(runs) {
     const all = [...fields, `duration_s=${kDuration_s}`, 'pacing=lockstep'];
     flyCourse(runs, id, all);
   }
+  flyCourse(runs, kLost.id, kLost.fields);
   return {};
 }
 
@@ -149,6 +165,12 @@ try {
   await page.locator('.sweep-cell').nth(6).click();
   await page.waitForTimeout(500);
   await save('dashboard_sweeps');
+  await page.keyboard.press('Escape');
+  await page.locator(`.run[data-run="${kLost.id}"] [data-role=explain]`).click();
+  await page.locator('[data-role=start-study]').click();
+  await page.locator('[data-role=study-causes]').waitFor({ timeout: 600_000 });
+  await page.waitForTimeout(500);
+  await save('dashboard_studies');
 } finally {
   await stage.close();
 }

@@ -20,11 +20,13 @@ import './styles/scoring.css';
 import './styles/calibration.css';
 import './styles/missions.css';
 import './styles/sweeps.css';
+import './styles/studies.css';
 import './styles/palette.css';
 import './styles/narrow.css';
 import { CalibrationClient } from './connection/calibration_client';
 import { RestClient } from './connection/rest_client';
 import { StreamClient } from './connection/stream_client';
+import { StudyClient } from './connection/study_client';
 import { SweepClient } from './connection/sweep_client';
 import { uploadByBrowser } from './connection/upload';
 import { Alignment } from './store/alignment';
@@ -49,6 +51,7 @@ import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
 import { Store } from './store/state';
+import { StudyDesk } from './store/studies/study_desk';
 import { SweepDesk } from './store/sweeps/sweep_desk';
 import { Themes } from './store/themes';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
@@ -108,6 +111,7 @@ const missions = new MissionDesk(store, rest, session, storage, later, newKey, (
   catalogue.readScenarios(),
 );
 const sweeps = new SweepDesk(store, new SweepClient(rest), session, notices, later);
+const studies = new StudyDesk(store, new StudyClient(rest), rest, session, notices, later);
 const layouts = new Layouts(store, notices, storage, {
   look: () => {
     const { scene: shown, sideBySide } = store.state;
@@ -140,6 +144,7 @@ const context = {
   calibration,
   missions,
   sweeps,
+  studies,
   rest,
   notices,
   client,

@@ -10,6 +10,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/file_limits.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/explain/explain_run.hpp"
@@ -32,6 +33,8 @@ struct ExplainArguments {
   std::vector<std::string> causes;
   std::size_t flights = 12;
   std::size_t jobs = 0;
+  FileLimits files;
+  std::string progress;
   bool json = false;
   bool quiet = false;
 };
@@ -57,6 +60,8 @@ experiments::ExplainOptions explain_options_from(const ExplainArguments& argumen
   options.flights.jobs =
       arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
   options.flights.most_flights = arguments.flights;
+  options.flights.sources = apply(arguments.files);
+  options.flights.flight_options = arguments.files.options();
   options.flights.cancel = &catch_stop_signals();
   options.flights.progress = [&display, most = arguments.flights](std::size_t done,
                                                                   const std::string& name) {
@@ -87,7 +92,7 @@ int explain(const ExplainArguments& arguments) {
   const fs::path folder =
       fs::absolute(arguments.out.empty() ? "explained/" + server::folder_name(run) : arguments.out);
   Result<experiments::Explanation> explanation = [&] {
-    ProgressDisplay display(arguments.quiet);
+    ProgressDisplay display(arguments.quiet, arguments.progress);
     return experiments::explain_run(run, explain_options_from(arguments, folder, display));
   }();
   if (!explanation) return report(explanation.error());
@@ -131,6 +136,8 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_file_limits(*command, arguments->files, "the run's scenario");
+  command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
   command->add_flag("--json", arguments->json, "Print JSON instead of sentences");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = explain(*arguments); });

@@ -12,6 +12,7 @@
 #include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/file_limits.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/hunt/hunt.hpp"
@@ -40,6 +41,8 @@ struct HuntArguments {
   std::optional<double> position_rmse_limit_m;
   bool all = false;
   std::size_t jobs = 0;
+  FileLimits files;
+  std::string progress;
   bool json = false;
   bool quiet = false;
 };
@@ -77,7 +80,8 @@ Result<experiments::Hunt> hunt_from(const HuntArguments& arguments) {
   replace(*document, "position_rmse_limit_m", arguments.position_rmse_limit_m);
   if (arguments.all) (*document)["until"] = "flights";
   const fs::path folder = fs::absolute(arguments.file).parent_path().lexically_normal();
-  auto hunt = experiments::resolve_hunt(std::move(*document), folder, arguments.estimator);
+  auto hunt = experiments::resolve_hunt(
+      std::move(*document), folder, arguments.estimator, {apply(arguments.files), {}});
   if (!hunt) return hunt.error().in(arguments.file);
   return hunt;
 }
@@ -87,24 +91,6 @@ std::string progress_text(const experiments::Hunt& hunt, const experiments::Hunt
   return std::to_string(result.flights.size()) + " of at most " +
          counted(hunt.most_flights, "flight") +
          (worst == nullptr ? "" : "; the worst one " + experiments::result_text(*worst));
-}
-
-Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
-                                         const HuntArguments& arguments) {
-  ProgressDisplay display(arguments.quiet);
-  experiments::HuntOptions options;
-  options.flights.folder = fs::absolute(arguments.out);
-  options.flights.program = "/proc/self/exe";
-  options.flights.jobs =
-      arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
-  options.flights.cancel = &catch_stop_signals();
-  options.flights.warn = [&](const std::string& text) { display.warn("warning: " + text); };
-  options.progress = [&](const experiments::HuntResult& result) {
-    display.show(
-        static_cast<double>(result.flights.size()) / static_cast<double>(hunt.most_flights),
-        progress_text(hunt, result));
-  };
-  return experiments::fly_hunt(hunt, options);
 }
 
 /// hunt.json, and worst.json if a flight was flown.
@@ -117,6 +103,27 @@ Status write_results(const experiments::Hunt& hunt,
   const Result<Json> scenario = experiments::scenario_document(hunt, *result.worst());
   if (!scenario) return scenario.error();
   return server::write_json(folder / "worst.json", *scenario);
+}
+
+Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
+                                         const HuntArguments& arguments) {
+  ProgressDisplay display(arguments.quiet, arguments.progress);
+  experiments::HuntOptions options;
+  options.flights.folder = fs::absolute(arguments.out);
+  options.flights.program = "/proc/self/exe";
+  options.flights.flight_options = arguments.files.options();
+  options.flights.jobs =
+      arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
+  options.flights.cancel = &catch_stop_signals();
+  options.flights.warn = [&](const std::string& text) { display.warn("warning: " + text); };
+  options.progress = [&](const experiments::HuntResult& result) {
+    // Who follows the hunt sees what it has found; the end reports files that cannot be written.
+    if (!result.flights.empty()) (void)write_results(hunt, result, options.flights.folder);
+    display.show(
+        static_cast<double>(result.flights.size()) / static_cast<double>(hunt.most_flights),
+        progress_text(hunt, result));
+  };
+  return experiments::fly_hunt(hunt, options);
 }
 
 int hunt(const HuntArguments& arguments) {
@@ -178,6 +185,8 @@ void add_hunt_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_file_limits(*command, arguments->files, "the scenario");
+  command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = hunt(*arguments); });

@@ -10,6 +10,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/file_limits.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/predict/predict.hpp"
@@ -37,6 +38,8 @@ struct PredictArguments {
   double cell_m = 100.0;
   bool no_map = false;
   unsigned jobs = 0;
+  FileLimits files;
+  std::string progress;
   bool json = false;
   bool quiet = false;
 };
@@ -44,15 +47,18 @@ struct PredictArguments {
 Result<server::Scenario> load_to_predict(const PredictArguments& arguments) {
   const auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
-  Result<server::Scenario> scenario = server::load_scenario(arguments.scenario, *overrides);
+  const SourcePolicy sources = apply(arguments.files);
+  Result<server::Scenario> scenario =
+      server::load_scenario(arguments.scenario, *overrides, sources);
   if (!scenario) return scenario.error();
+  scenario->sources = sources;
   if (Status status = server::check_scenario(*scenario); !status) return status.error();
   return scenario;
 }
 
 Result<prediction::Predicted> predict_quietly_or_not(const PredictArguments& arguments,
                                                      const server::Scenario& scenario) {
-  ProgressDisplay display(arguments.quiet);
+  ProgressDisplay display(arguments.quiet, arguments.progress);
   prediction::PredictOptions options;
   options.camera = arguments.camera;
   options.rate_hz = arguments.rate_hz;
@@ -135,6 +141,8 @@ void add_predict_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Threads; 0: one for each processor")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_file_limits(*command, arguments->files, "the scenario");
+  command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
   command->add_flag("--json", arguments->json, "Print JSON instead of sentences");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = predict(*arguments); });

@@ -1,6 +1,5 @@
 // overfly run: flies one scenario into one folder.
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -9,6 +8,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/file_limits.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
@@ -19,7 +19,6 @@
 #include "server/scenario/document/scenario_override.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
-#include "terrain/files/network.hpp"
 
 namespace overfly::app {
 namespace {
@@ -29,8 +28,7 @@ struct RunArguments {
   std::string out;
   std::vector<std::string> sets;
   std::string renderer;
-  std::vector<std::filesystem::path> folders;  ///< whose files may be named; empty = any file may
-  std::vector<std::filesystem::path> closed;   ///< in them, but may not be named
+  FileLimits files;
   bool json = false;
   bool quiet = false;
 };
@@ -39,10 +37,7 @@ Result<server::Scenario> load_to_fly(const RunArguments& arguments) {
   auto overrides = server::parse_overrides(arguments.sets);
   if (!overrides) return overrides.error();
   if (!arguments.renderer.empty()) overrides->push_back({"renderer.camera", arguments.renderer});
-  const bool confined = !arguments.folders.empty();
-  if (confined) terrain::turn_network_off();
-  const SourcePolicy sources =
-      confined ? SourcePolicy::inside(arguments.folders, arguments.closed) : SourcePolicy();
+  const SourcePolicy sources = apply(arguments.files);
   Result<server::Scenario> scenario =
       server::load_scenario(arguments.scenario, *overrides, sources);
   if (!scenario) return scenario.error();
@@ -111,19 +106,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--renderer", arguments->renderer, "Renderer of the camera's image")
       ->check(CLI::IsMember({"auto", "egl", "raycast"}));
-  CLI::Option* folders =
-      command
-          ->add_option("--files-in",
-                       arguments->folders,
-                       "Folder whose files the scenario may name; repeatable. Without it any file "
-                       "may be named; with it none outside of these folders, and no network")
-          ->allow_extra_args(false);
-  command
-      ->add_option("--files-not-in",
-                   arguments->closed,
-                   "Folder in those whose files may not be named; repeatable")
-      ->allow_extra_args(false)
-      ->needs(folders);
+  add_file_limits(*command, arguments->files, "the scenario");
   command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -33,6 +33,7 @@ struct ServeArguments {
   std::uint16_t port = 8480;          ///< 0 = any free port
   std::string runs = "runs";
   std::string sweeps = "sweeps";
+  std::string studies = "studies";
   std::string scenarios;
   std::string web;
   std::string token_file;
@@ -86,6 +87,7 @@ int serve(const ServeArguments& arguments) {
   server::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;
   manager_options.sweeps_folder = arguments.sweeps;
+  manager_options.studies_folder = arguments.studies;
   manager_options.scenarios_folder =
       arguments.scenarios.empty() ? scenarios_folder() : fs::path(arguments.scenarios);
   manager_options.saved_scenarios_folder = arguments.saved_scenarios;
@@ -144,6 +146,12 @@ void add_serve_command(CLI::App& app, int& exit_code) {
       ->add_option("--sweeps",
                    arguments->sweeps,
                    "Folder of the sweeps, which need not exist; an empty name = none are shown")
+      ->capture_default_str();
+  command
+      ->add_option("--studies",
+                   arguments->studies,
+                   "Folder of the studies that clients start, made with the first one; an empty "
+                   "name = they cannot")
       ->capture_default_str();
   command->add_option("--scenarios", arguments->scenarios, "Folder of the scenario files");
   command

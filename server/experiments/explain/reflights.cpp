@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kIdLength = 16;
+/// As of the runs of sweeps.
+constexpr std::size_t kIdLength = 20;
 
 /// The errors of each pose are of no use here.
 evaluation::Score without_poses(evaluation::Score score) {

@@ -18,9 +18,10 @@
 namespace overfly::server::experiments {
 
 struct ReflightOptions {
-  std::filesystem::path folder;   ///< of the explanation; created
-  std::filesystem::path program;  ///< this program, which flies single scenarios
-  std::size_t jobs = 1;           ///< flights at the same time, if the memory suffices
+  std::filesystem::path folder;             ///< of the explanation; created
+  std::filesystem::path program;            ///< this program, which flies single scenarios
+  std::vector<std::string> flight_options;  ///< further options of `overfly run`
+  std::size_t jobs = 1;                     ///< flights at the same time, if the memory suffices
   std::size_t most_flights = 12;
   double timeout_s = 3600.0;  ///< of one flight, on the clock on the wall
   SourcePolicy sources;
@@ -43,7 +44,7 @@ class Reflights {
   Reflights(ReflightOptions options, std::filesystem::path run_folder)
       : options_(std::move(options)),
         run_folder_(std::move(run_folder)),
-        processes_(options_.program) {}
+        processes_(options_.program, options_.flight_options) {}
 
   /// Flights that may still be made.
   [[nodiscard]] std::size_t left() const;

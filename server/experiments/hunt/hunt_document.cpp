@@ -39,7 +39,8 @@ Json sweep_document_of(const Json& hunt) {
 
 /// Keeps one estimator of the base scenario.
 Status choose_estimator(Hunt& hunt, const std::string& wanted) {
-  const Result<Scenario> base = load_scenario(hunt.sweep.scenario_file, hunt.sweep.changes);
+  const Result<Scenario> base =
+      load_scenario(hunt.sweep.scenario_file, hunt.sweep.changes, hunt.sweep.sources);
   if (!base) return base.error();
   std::string names;
   for (const Json& entry : base->resolved.at("estimators")) {
@@ -121,7 +122,10 @@ Result<Json> read_hunt_document(const fs::path& file) {
   return hunt;
 }
 
-Result<Hunt> resolve_hunt(Json document, const fs::path& folder, const std::string& estimator) {
+Result<Hunt> resolve_hunt(Json document,
+                          const fs::path& folder,
+                          const std::string& estimator,
+                          const HuntLimits& limits) {
   std::string messages;
   for (const SchemaViolation& violation : hunt_schema().violations(document)) {
     messages += (messages.empty() ? "" : "\n") + violation.text;
@@ -133,6 +137,8 @@ Result<Hunt> resolve_hunt(Json document, const fs::path& folder, const std::stri
 
   Hunt hunt;
   hunt.sweep = std::move(*sweep);
+  hunt.sweep.sources = limits.sources;
+  hunt.sweep.check = limits.check;
   hunt.method = document.at("method") == "random" ? SearchMethod::kRandom : SearchMethod::kModel;
   hunt.stop_at_failure = document.at("until") == "failure";
   hunt.most_flights = document.at("most_flights").get<std::size_t>();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -27,6 +28,13 @@ struct Hunt {
   MarginRule rule;
 };
 
+/// What the flights of a hunt may name and do.
+struct HuntLimits {
+  SourcePolicy sources;
+  /// Further check of every flight's scenario; may be empty.
+  std::function<Status(const Scenario&)> check;
+};
+
 /// The JSON schema of hunt files as text, embedded in the program.
 [[nodiscard]] const std::string& hunt_schema_text();
 
@@ -42,11 +50,12 @@ struct Hunt {
 /// @param estimator  of the base scenario; empty = its first one. Must be empty if the document has
 /// an estimator of its own.
 /// Errors: kInvalidArgument with each invalid field as "field = value: must be limit", one a line;
-/// as load_scenario for the middle and for each corner of the axes; kUnsupported for scenarios
-/// that are flown by a live vehicle.
+/// as load_scenario and HuntLimits::check for the middle and for each corner of the axes;
+/// kUnsupported for scenarios that are flown by a live vehicle.
 [[nodiscard]] Result<Hunt> resolve_hunt(nlohmann::json document,
                                         const std::filesystem::path& folder,
-                                        const std::string& estimator);
+                                        const std::string& estimator,
+                                        const HuntLimits& limits = {});
 
 /// The axes as the search sees them.
 [[nodiscard]] std::vector<SearchAxis> search_axes(const Hunt& hunt);

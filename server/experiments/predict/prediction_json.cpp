@@ -65,6 +65,15 @@ Json json_of(const RiskMap& map) {
           {"relief_over_height", column_of(&Features::relief)}};
 }
 
+Json json_of(const Prediction& prediction, const RiskyStretch& stretch) {
+  const PredictedInstant& worst = prediction.instants[stretch.worst];
+  return {{"from_s", prediction.instants[stretch.first].t_s},
+          {"to_s", prediction.instants[stretch.last].t_s},
+          {"worst_s", worst.t_s},
+          {"risk_10_s", worst.risk},
+          {"reasons", reasons_of(worst)}};
+}
+
 }  // namespace
 
 Json json_from(const Prediction& prediction) {
@@ -72,6 +81,10 @@ Json json_from(const Prediction& prediction) {
   for (const PredictedInstant& instant : prediction.instants) {
     instants.push_back(json_of(instant));
     if (prediction.risk) instants.back()["risk_so_far"] = instant.risk_so_far;
+  }
+  Json stretches = Json::array();
+  for (const RiskyStretch& stretch : risky_stretches(prediction)) {
+    stretches.push_back(json_of(prediction, stretch));
   }
   return {{"scenario", prediction.scenario},
           {"title", prediction.title},
@@ -82,6 +95,7 @@ Json json_from(const Prediction& prediction) {
           {"step_s", prediction.step_s},
           {"risk", prediction.risk ? Json(*prediction.risk) : Json(nullptr)},
           {"sentences", sentences_of(prediction)},
+          {"stretches", stretches},
           {"instants", instants},
           {"map", prediction.map ? json_of(*prediction.map) : Json(nullptr)},
           {"warnings", prediction.warnings}};

@@ -244,7 +244,9 @@ Result<std::string> page_of(const Prediction& prediction, const Image& ground) {
   for (std::size_t i = 0; i < sentences.size(); ++i) {
     page += html::paragraph(sentences[i], i == 0 ? "verdict" : "");
   }
-  page += html::heading(2, "Time line") + risk_figure(prediction);
+  // The dashboard, which shows the sentences itself, opens the page here.
+  page +=
+      "<div id=\"time-line\"></div>\n" + html::heading(2, "Time line") + risk_figure(prediction);
   if (prediction.map && !ground.empty()) {
     const auto map = map_figure(prediction, ground);
     if (!map) return map.error();

@@ -1,5 +1,6 @@
 #include "server/experiments/tables/cell_scores.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/scenario/estimator_spec.hpp"
@@ -23,16 +24,23 @@ struct ErrorValues {
   std::vector<double> percent_of_path;
   CellHonesty honesty;
   std::vector<double> deviation_ratios;
+  std::array<std::vector<double>, kFixIntervalsM.size()> fix_medians_m;
+  std::array<double, kFixIntervalsM.size()> fix_worst_m{};
 
   [[nodiscard]] CellErrors spreads() const {
     CellHonesty all_honesty = honesty;
     all_honesty.deviation_ratio = spread_of(deviation_ratios);
+    std::array<CellFixDrift, kFixIntervalsM.size()> fix_drift;
+    for (std::size_t i = 0; i < fix_drift.size(); ++i) {
+      fix_drift[i] = {spread_of(fix_medians_m[i]), fix_worst_m[i]};
+    }
     return {spread_of(position_m),
             spread_of(rotation_deg),
             spread_of(horizontal_m),
             spread_of(vertical_m),
             spread_of(percent_of_path),
-            all_honesty};
+            all_honesty,
+            fix_drift};
   }
 };
 
@@ -52,6 +60,18 @@ void add_honesty(const evaluation::AlignmentScore& score, ErrorValues& values) {
   }
 }
 
+void add_fix_drift(const evaluation::AlignmentScore& score, ErrorValues& values) {
+  for (const evaluation::FixDrift& drift : score.fix_drift) {
+    const auto found = std::find(kFixIntervalsM.begin(), kFixIntervalsM.end(), drift.interval_m);
+    if (found == kFixIntervalsM.end() || !drift.unavailable.empty()) continue;
+    const auto i = static_cast<std::size_t>(found - kFixIntervalsM.begin());
+    keep(values.fix_medians_m[i], drift.median_m);
+    if (std::isfinite(drift.worst_m)) {
+      values.fix_worst_m[i] = std::max(values.fix_worst_m[i], drift.worst_m);
+    }
+  }
+}
+
 void add_flight_errors(const FlightScore& flight,
                        const ErrorConvention& convention,
                        ErrorValues& values) {
@@ -65,6 +85,7 @@ void add_flight_errors(const FlightScore& flight,
   keep(values.horizontal_m, score.horizontal_rmse_m);
   keep(values.vertical_m, score.vertical_rmse_m);
   add_honesty(score, values);
+  add_fix_drift(score, values);
   if (flight.path_length_m > 0.0) {
     keep(values.percent_of_path, 100.0 * position_m / flight.path_length_m);
   }

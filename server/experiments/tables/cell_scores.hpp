@@ -1,6 +1,7 @@
 // The flights of each cell and estimator together: outcomes, success rate, errors.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,6 +49,15 @@ struct CellHonesty {
   std::optional<Spread> deviation_ratio;
 };
 
+/// Distances between position fixes whose drift the tables show [m].
+inline constexpr std::array<double, 3> kFixIntervalsM = {1000.0, 2000.0, 5000.0};
+
+/// Drift between position fixes, of the flights whose path is long enough.
+struct CellFixDrift {
+  std::optional<Spread> median_m;  ///< of the flights' medians
+  double worst_m = 0.0;            ///< of all of these flights
+};
+
 /// Empty where no flight counts: an X enters no mean.
 struct CellErrors {
   std::optional<Spread> position_m;
@@ -56,6 +66,7 @@ struct CellErrors {
   std::optional<Spread> vertical_m;    ///< without holding the last pose
   std::optional<Spread> percent_of_path;
   CellHonesty honesty;
+  std::array<CellFixDrift, kFixIntervalsM.size()> fix_drift;  ///< as kFixIntervalsM
 };
 
 struct CellScores {

@@ -50,12 +50,25 @@ Json spread_json(const std::optional<Spread>& spread) {
           {"q3", spread->quartiles.high}};
 }
 
+Json fix_drift_json(const CellErrors& errors) {
+  Json drifts = Json::array();
+  for (std::size_t i = 0; i < kFixIntervalsM.size(); ++i) {
+    const CellFixDrift& drift = errors.fix_drift[i];
+    if (!drift.median_m) continue;
+    drifts.push_back({{"interval_m", kFixIntervalsM[i]},
+                      {"median_m", spread_json(drift.median_m)},
+                      {"worst_m", drift.worst_m}});
+  }
+  return drifts;
+}
+
 Json errors_json(const CellErrors& errors) {
   return {{"position_m", spread_json(errors.position_m)},
           {"rotation_deg", spread_json(errors.rotation_deg)},
           {"horizontal_m", spread_json(errors.horizontal_m)},
           {"vertical_m", spread_json(errors.vertical_m)},
           {"percent_of_path", spread_json(errors.percent_of_path)},
+          {"fix_drift", fix_drift_json(errors)},
           {"honesty",
            {{"flights", errors.honesty.flights},
             {"overconfident", errors.honesty.overconfident},
@@ -157,7 +170,12 @@ std::string csv_from(const SweepTables& tables) {
        {"position_m", "rotation_deg", "horizontal_m", "vertical_m", "percent_of_path"}) {
     for (const char* part : {"median", "q1", "q3"}) text += std::string(",") + name + "_" + part;
   }
-  text += ",outcomes,covariance_flights,overconfident,too_cautious,deviation_ratio_median\n";
+  text += ",outcomes,covariance_flights,overconfident,too_cautious,deviation_ratio_median";
+  for (const double interval_m : kFixIntervalsM) {
+    const std::string name = ",fix_drift_" + number_text(interval_m) + "m_";
+    text += name + "median" + name + "worst";
+  }
+  text += "\n";
   for (const CellScores& row : tables.rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {
       for (const ShownAxis& axis : tables.scores.axes) {
@@ -179,8 +197,13 @@ std::string csv_from(const SweepTables& tables) {
       text +=
           "," + outcomes + "," + std::to_string(honesty.flights) + "," +
           std::to_string(honesty.overconfident) + "," + std::to_string(honesty.too_cautious) + "," +
-          (honesty.deviation_ratio ? number_text(honesty.deviation_ratio->quartiles.median) : "") +
-          "\n";
+          (honesty.deviation_ratio ? number_text(honesty.deviation_ratio->quartiles.median) : "");
+      for (const CellFixDrift& drift : errors.fix_drift) {
+        text += drift.median_m ? "," + number_text(drift.median_m->quartiles.median) + "," +
+                                     number_text(drift.worst_m)
+                               : ",,";
+      }
+      text += "\n";
     }
   }
   return text;

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/text/number_text.hpp"
-#include "server/experiments/tables/sweep_tables.hpp"
+#include "server/experiments/tables/fix_drift_section.hpp"
+#include "server/experiments/tables/table_parts.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -40,25 +42,6 @@ std::vector<CellRows> rows_by_cell(const SweepTables& tables) {
 const Json& cell_of(const CellRows& rows) {
   const auto first = std::find_if(rows.begin(), rows.end(), [](const auto* r) { return r; });
   return (*first)->cell;
-}
-
-void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns) {
-  for (const ShownAxis& axis : scores.axes) {
-    columns.push_back({axis.label + (axis.unit.empty() ? "" : " [" + axis.unit + "]"), true});
-  }
-}
-
-std::vector<TableCell> axis_cells(const SweepScores& scores, const Json& cell) {
-  std::vector<TableCell> cells;
-  for (const ShownAxis& axis : scores.axes) {
-    const auto found = cell.find(axis.name);
-    const bool absent = found == cell.end();
-    cells.push_back({absent               ? ""
-                     : found->is_string() ? found->get<std::string>()
-                                          : found->dump(),
-                     false});
-  }
-  return cells;
 }
 
 /// Medians of one quantity in one cell, and which of them are the lowest.
@@ -158,15 +141,6 @@ DocumentSection parts_section(const SweepTables& tables, std::size_t convention)
                                {"vertical [m]", &CellErrors::vertical_m},
                                {"[% of path]", &CellErrors::percent_of_path}});
   return section;
-}
-
-/// @param position  of the same flights
-std::string quartiles_text(const std::optional<Spread>& spread,
-                           const std::optional<Spread>& position) {
-  if (!spread) return position ? "-" : "X";
-  if (spread->flights < 2) return error_number(spread->quartiles.median);
-  return error_number(spread->quartiles.median) + " [" + error_number(spread->quartiles.low) +
-         ", " + error_number(spread->quartiles.high) + "]";
 }
 
 std::string percent(double share) { return std::to_string(std::lround(100.0 * share)); }
@@ -380,6 +354,10 @@ TableDocument document_from(const SweepTables& tables, const TableOptions& optio
     }
   }
   document.sections.push_back(parts_section(tables, 1));
+  for (std::size_t i = 0; i < all_conventions().size(); ++i) {
+    DocumentSection drift = fix_drift_section(tables, i);
+    if (!drift.table.rows.empty()) document.sections.push_back(std::move(drift));
+  }
   return document;
 }
 

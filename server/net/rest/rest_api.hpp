@@ -7,6 +7,7 @@
 
 #include "server/calibration/session/calibration_desk.hpp"
 #include "server/experiments/service/sweep_service.hpp"
+#include "server/experiments/studies/study_service.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/maps/map_service.hpp"
 #include "server/net/http/rest_router.hpp"
@@ -78,6 +79,13 @@ struct SweepRoutes {
 void add_sweep_routes(RestRouter* router, const SweepRoutes& routes);
 /// sweep-files, sweep-files/{name}, sweep-check; starting, continuing and cancelling sweeps
 void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes);
+/// What the routes of studies need.
+struct StudyRoutes {
+  server::experiments::StudyService* studies = nullptr;
+  ReadingRoutes readers;
+};
+/// studies, studies/{name} and what is in them
+void add_study_routes(RestRouter* router, const StudyRoutes& routes);
 /// calibration-sources, calibration-sessions and what is in them
 void add_calibration_session_routes(RestRouter* router, server::CalibrationDesk* desk);
 /// calibrations, calibrations/{name}

@@ -52,6 +52,7 @@ export async function startServer({
   links = [],
   cameras = [],
   sweeps = path.join(path.dirname(runs), 'sweeps'),
+  studies = path.join(path.dirname(runs), 'studies'),
   allowCommands = false,
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
@@ -59,7 +60,7 @@ export async function startServer({
   args.push('--scenarios', scenarios, '--web', kWeb);
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
   args.push('--saved-scenarios', path.join(path.dirname(runs), 'saved'));
-  args.push('--sweeps', sweeps);
+  args.push('--sweeps', sweeps, '--studies', studies);
   for (const folder of data) args.push('--data', folder);
   for (const link of links) args.push('--allow-link', link);
   for (const camera of cameras) args.push('--allow-camera', camera);

@@ -33,6 +33,7 @@ struct Made {
   Outcome outcome = Outcome::kCompleted;
   std::string type = "process";
   std::vector<double> nees = {};  ///< of the positions, if it states covariances
+  std::vector<evaluation::FixDrift> fix_drift = {};
 };
 
 evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
@@ -42,6 +43,7 @@ evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, doubl
   score.position_rmse_hold_m = 2.0 * score.position_m.rmse;
   score.horizontal_rmse_m = 0.6 * score.position_m.rmse;
   score.vertical_rmse_m = 0.8 * score.position_m.rmse;
+  score.fix_drift = made.fix_drift;
   if (!made.nees.empty()) {
     score.consistency.emplace().position = evaluation::nees_of(made.nees, 3);
   }
@@ -167,16 +169,43 @@ TEST_F(SweepTablesTest, MarksEstimatorsThatAreOverconfident) {
   EXPECT_DOUBLE_EQ(honesty.deviation_ratio->quartiles.median, 2.0);
   EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 3 | 2 | 0 | 2.00 [1.50, 2.00] |\n"));
   EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | 0 |")));
-  EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2\n"));
+  EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2,,,,,,\n"));
   EXPECT_EQ(
       json_from(made).at("rows").at(0).at("errors").at("sim3").at("honesty").at("overconfident"),
       2);
 }
 
+TEST_F(SweepTablesTest, ShowsTheDriftBetweenFixesOfLongFlights) {
+  const auto flown = [](double median_m, double worst_m) {
+    return std::vector<evaluation::FixDrift>{
+        {1000.0, 12, 2, median_m, worst_m, 0.0, 0.0, ""},
+        {2000.0, 0, 0, 0.0, 0.0, 0.0, 0.0, "the path is shorter than 2000 m"}};
+  };
+  const Outcome completed = Outcome::kCompleted;
+  add({"one", 50, 0, 1.0, 0.1, completed, "process", {}, flown(3.0, 9.5)});
+  add({"one", 50, 1, 1.0, 0.1, completed, "process", {}, flown(5.0, 7.0)});
+  add({"two", 50, 0, 1.0, 0.1});
+  const SweepTables made = tables();
+  const auto& drift = made.rows.at(0).errors[1].fix_drift;
+  EXPECT_EQ(drift[0].median_m->flights, 2U);
+  EXPECT_DOUBLE_EQ(drift[0].median_m->quartiles.median, 4.0);
+  EXPECT_DOUBLE_EQ(drift[0].worst_m, 9.5);
+  EXPECT_FALSE(drift[1].median_m);
+  EXPECT_THAT(markdown(), HasSubstr("Drift between position fixes, convention sim3"));
+  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 4.00 [3.50, 4.50] / 9.50 | - | - |\n"));
+  EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | -")));
+  EXPECT_THAT(csv_from(made), HasSubstr("fix_drift_1000m_median,fix_drift_1000m_worst"));
+  EXPECT_THAT(csv_from(made), HasSubstr(",4,9.5,,,,\n"));
+  const Json json = json_from(made).at("rows").at(0).at("errors").at("sim3").at("fix_drift");
+  ASSERT_EQ(json.size(), 1U);
+  EXPECT_EQ(json.at(0).at("worst_m"), 9.5);
+}
+
 TEST_F(SweepTablesTest, HasNoHonestyWithoutCovariances) {
   add({"one", 50, 0, 1.0, 0.1});
   EXPECT_THAT(markdown(), Not(HasSubstr("Honesty")));
-  EXPECT_THAT(csv_from(tables()), HasSubstr("COMPLETED:1,0,0,0,\n"));
+  EXPECT_THAT(markdown(), Not(HasSubstr("position fixes")));
+  EXPECT_THAT(csv_from(tables()), HasSubstr("COMPLETED:1,0,0,0,,,,,,,\n"));
 }
 
 TEST_F(SweepTablesTest, TiesAreHighlightedTogether) {

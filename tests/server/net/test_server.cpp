@@ -68,6 +68,7 @@ TestServer::TestServer(net::ServerOptions server_options, server::RunManagerOpti
   options.scenarios_folder = scenarios;
   options.saved_scenarios_folder = folder() / "saved";
   options.sweeps_folder = folder() / "sweeps";
+  options.studies_folder = folder() / "studies";
   options.data_folders = {world_folder, logs, uploads};
   server_options.uploads_folder = uploads;
   options.renderer_factory = [](std::shared_ptr<const terrain::TileSource> tiles)

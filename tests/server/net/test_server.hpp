@@ -19,7 +19,7 @@ namespace overfly::testing {
 /// Scenarios: "tiny" (2 s in lockstep, estimator "perfect", frames recorded), "slow" (60 s in
 /// real time, the same estimator) and "broken" (a field at fault). Flight logs: folder() / "logs",
 /// empty, and uploads in folder() / "uploads"; saved scenarios in folder() / "saved",
-/// sweeps in folder() / "sweeps", which is absent.
+/// sweeps in folder() / "sweeps" and studies in folder() / "studies", which are absent.
 class TestServer {
  public:
   /// @param token  that clients must show; empty = none

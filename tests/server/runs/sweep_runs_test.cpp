@@ -18,19 +18,19 @@ constexpr const char* kRun = "0123456789abcdef0123";
 TEST(RunPlaces, TellsRunsOfSweepsFromOthersByTheirIds) {
   const overfly::testing::TemporaryFolder folder;
   const fs::path runs = folder.path() / "runs";
-  const RunPlaces places(runs, "/sweeps");
+  const RunPlaces places(runs, {"/sweeps"});
   const std::string id = std::string("night.1.") + kRun;
   EXPECT_EQ(places.of(id), fs::path("/sweeps/night.1/runs") / kRun);
-  EXPECT_EQ(places.in_sweep(id)->sweep, "night.1");
+  EXPECT_EQ(places.in_group(id)->group, "/sweeps/night.1");
   for (const char* other : {"course-20261125",
                             "0123456789abcdef0123",
                             "a.0123456789abcdef012",
                             "a.0123456789ABCDEF0123",
                             "a-0123456789abcdef0123"}) {
     EXPECT_EQ(places.of(other), runs / other);
-    EXPECT_FALSE(places.in_sweep(other)) << other;
+    EXPECT_FALSE(places.in_group(other)) << other;
   }
-  EXPECT_EQ(RunPlaces(runs, "").of(id), runs / id) << "no folder of sweeps";
+  EXPECT_EQ(RunPlaces(runs, {""}).of(id), runs / id) << "no folder of sweeps";
   fs::create_directories(runs / id);
   EXPECT_EQ(places.of(id), runs / id) << "the folder of runs precedes";
 }

@@ -106,8 +106,42 @@ export interface RelativeError {
   rotation_deg_per_100m: number;
 }
 
+/** How far off the estimate is when the next position fix comes, with one every interval_m. */
+export interface FixDrift {
+  interval_m: number;
+  /** Why there is none; absent with the figures. */
+  unavailable?: string;
+  segments?: number;
+  /** Segments that fit into the path without overlap. */
+  apart?: number;
+  median_m?: number;
+  worst_m?: number;
+}
+
+/** Normalised estimation error squared: errors against the covariances that were stated. */
+export interface Nees {
+  /** The mean that is expected. */
+  degrees: number;
+  samples: number;
+  mean: number;
+  band_95: [number, number];
+  /** Errors / stated standard deviations. */
+  deviation_ratio: number;
+  honesty: string;
+}
+
+export interface Consistency {
+  position: Nees | null;
+  rotation: Nees | null;
+  pose: Nees | null;
+  honesty: string | null;
+}
+
 export interface AlignmentErrors {
   relative?: RelativeError[];
+  fix_drift?: FixDrift[];
+  /** Absent where no covariance was stated. */
+  consistency?: Consistency;
   scale?: number | null;
   position_rmse_m?: number | null;
   rotation_rmse_deg?: number | null;

@@ -8,6 +8,7 @@ import type { Notices } from './notices';
 import { sectionErrors, sectionOverrides } from './scenario_schema';
 import type { Session } from './session';
 import type { Store } from './state';
+import type { StudyScenario } from './studies/study_form';
 
 /** Selected first, because it needs no data. */
 const kPreferred = 'course';
@@ -118,17 +119,10 @@ export class Catalogue {
   async launch(texts: ReadonlyMap<string, string>): Promise<void> {
     const { state } = this.store;
     const { scenarioDocument } = state;
-    if (scenarioDocument === null || state.launching) return;
-    const { overrides: fields, errors } = overridesOf(scenarioDocument, texts);
-    const { scenarioEdits, scenarioSchema } = state;
-    for (const [section, text] of scenarioEdits) {
-      errors.push(...sectionErrors(scenarioSchema ?? {}, section, text));
-    }
-    state.launchErrors = errors;
-    this.store.change('launch');
-    if (errors.length > 0) return;
+    if (state.launching) return;
+    const overrides = this.checkedOverrides(texts);
+    if (overrides === null || scenarioDocument === null) return;
     state.launching = true;
-    const overrides = { ...sectionOverrides(scenarioEdits), ...fields };
     try {
       const run = await this.fly(scenarioDocument, overrides);
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
@@ -138,6 +132,43 @@ export class Catalogue {
     }
     state.launching = false;
     this.store.change('launch', 'lists');
+  }
+
+  /** What the form asks for, for a study; null, with errors in the form, if it is at fault. */
+  asked(texts: ReadonlyMap<string, string>): StudyScenario | null {
+    const overrides = this.checkedOverrides(texts);
+    return overrides === null ? null : this.withChanges(overrides);
+  }
+
+  /** The form's scenario with the changes of its sections only; null before it is read. */
+  chosen(): StudyScenario | null {
+    const { scenarioDocument, scenarioEdits } = this.store.state;
+    return scenarioDocument === null ? null : this.withChanges(sectionOverrides(scenarioEdits));
+  }
+
+  private withChanges(overrides: Record<string, Json>): StudyScenario {
+    const { repeatedRun, scenarioDocument, scenarioName, scenarios } = this.store.state;
+    if (repeatedRun !== null) {
+      const title = `Again: ${repeatedRun.title || repeatedRun.scenario}`;
+      return { scenario: '', overrides, document: scenarioDocument, title };
+    }
+    const entry = scenarios?.find(({ name }) => name === scenarioName);
+    const scenario = scenarioName ?? '';
+    return { scenario, overrides, document: null, title: entry?.title ?? scenario };
+  }
+
+  /** Checks the form. @return what differs from the scenario; null, with errors, if it is at fault */
+  private checkedOverrides(texts: ReadonlyMap<string, string>): Record<string, Json> | null {
+    const { state } = this.store;
+    const { scenarioDocument, scenarioEdits, scenarioSchema } = state;
+    if (scenarioDocument === null) return null;
+    const { overrides, errors } = overridesOf(scenarioDocument, texts);
+    for (const [section, text] of scenarioEdits) {
+      errors.push(...sectionErrors(scenarioSchema ?? {}, section, text));
+    }
+    state.launchErrors = errors;
+    this.store.change('launch');
+    return errors.length > 0 ? null : { ...sectionOverrides(scenarioEdits), ...overrides };
   }
 
   private fly(document: JsonObject, overrides: Record<string, Json>): Promise<Run> {

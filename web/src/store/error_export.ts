@@ -9,6 +9,7 @@ import {
   shownLengths_m,
 } from './error_table';
 import type { AlignmentErrors, EstimatorMetrics } from '../protocol/rest_types';
+import { fixCsvValues, fixFigures, kFixCsvHead } from './fix_errors';
 import { formatNumber, numberOf } from './format';
 import type { TextFormat } from './table_text';
 import { csvTable, latexTable, markdownTable } from './table_text';
@@ -28,9 +29,11 @@ export function exportErrors(watched: readonly WatchedRun[], format: TextFormat)
   if (format === 'CSV') return csv(entries);
   const several = watched.length > 1;
   const lengths_m = shownLengths_m(entries.map(({ errors }) => errors));
+  const fixes = fixFigures(entries.map(({ errors }) => errors));
   const figures = [
     ...kErrorFigures.map(({ label, unit }) => (unit === '' ? label : `${label} [${unit}]`)),
     ...lengths_m.map((length_m) => `Drift in ${length_m} m [%]`),
+    ...fixes.map(({ label, unit }) => (unit === '' ? label : `${label} [${unit}]`)),
   ];
   const head = [...(several ? ['Run'] : []), 'Estimator', 'Outcome', 'Alignment', ...figures];
   const rows = entries.map((entry) => [
@@ -42,6 +45,7 @@ export function exportErrors(watched: readonly WatchedRun[], format: TextFormat)
     ...lengths_m.map((length_m) =>
       formatNumber(relativeError(entry.errors, length_m)?.translation_percent, 3),
     ),
+    ...fixes.map(({ text }) => text(entry.errors)),
   ]);
   const table = { head, rows, numbers: figures.length };
   return format === 'Markdown' ? markdownTable(table) : latexTable(table);
@@ -70,8 +74,9 @@ function csv(entries: Entry[]): string {
     ...kRelativeLengths_m.map(
       (length_m) => relativeError(errors, length_m)?.translation_percent ?? '',
     ),
+    ...fixCsvValues(errors),
   ]);
   const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
   const drifts = kRelativeLengths_m.map((length_m) => `translation_percent_${length_m}m`);
-  return csvTable([...head, ...keys, ...drifts], lines);
+  return csvTable([...head, ...keys, ...drifts, ...kFixCsvHead], lines);
 }

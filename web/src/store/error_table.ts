@@ -6,6 +6,7 @@ import type {
   RelativeError,
   Run,
 } from '../protocol/rest_types';
+import { fixRows, neesRows } from './fix_errors';
 import { formatNumber, formatPercent, kNothing, numberOf } from './format';
 
 export const kDefaultAlignment = 'init_scale';
@@ -21,8 +22,10 @@ export interface ErrorRow {
   unit: string;
   hint: string;
   cells: string[];
-  /** Explains a cell without a number; empty if there is no explanation. */
+  /** Explains a cell; empty if there is no explanation. */
   cellHints: string[];
+  /** Cells that are marked; absent = those with an explanation. */
+  bad?: boolean[];
 }
 
 export interface ErrorTable {
@@ -116,6 +119,7 @@ function relativeRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
           ? `The tracked path has no part of ${length_m} m`
           : `${one.pairs} sub-paths; rotation ${formatNumber(one.rotation_deg_per_100m, 4)} deg per 100 m`,
       ),
+      bad: found.map(() => false),
     };
   });
 }
@@ -151,6 +155,8 @@ export function errorTable(
         cellHints: errors.map((error) => missingHint(error, row.key)),
       })),
       ...relativeRows(errors),
+      ...fixRows(errors),
+      ...neesRows(errors),
       {
         key: 'dropped_frames',
         label: 'Dropped frames',
@@ -165,18 +171,41 @@ export function errorTable(
 
 /** Tables of several runs as one, next to each other. */
 export function joinedTables(tables: readonly ErrorTable[]): ErrorTable {
-  const [first, ...others] = tables;
   return {
     estimators: tables.flatMap(({ estimators }) => estimators),
-    rows: (first?.rows ?? []).map((row, i) => {
-      const rows = [row, ...others.flatMap((table) => table.rows[i] ?? [])];
+    rows: rowsOfAny(tables).map((row) => {
+      const rows = tables.map((table) => {
+        const found = table.rows.find(({ key }) => key === row.key);
+        const absent = table.estimators.map(() => kNothing);
+        return found ?? { ...row, cells: absent, cellHints: [], bad: absent.map(() => false) };
+      });
       return {
         ...row,
         cells: rows.flatMap(({ cells }) => cells),
         cellHints: rows.flatMap(({ cells, cellHints }) => cells.map((_, k) => cellHints[k] ?? '')),
+        bad: rows.flatMap((one) => one.cells.map((_, k) => isBad(one, k))),
       };
     }),
   };
+}
+
+/** Whether a cell is marked. */
+function isBad({ cellHints, bad }: ErrorRow, index: number): boolean {
+  return bad === undefined ? (cellHints[index] ?? '') !== '' : bad[index] === true;
+}
+
+/** The rows that any of the tables has: some are shown only where a flight has them. */
+function rowsOfAny(tables: readonly ErrorTable[]): ErrorRow[] {
+  const all: ErrorRow[] = [];
+  for (const { rows } of tables) {
+    let place = 0;
+    for (const row of rows) {
+      const known = all.findIndex(({ key }) => key === row.key);
+      if (known < 0) all.splice(place, 0, row);
+      place = (known < 0 ? place : known) + 1;
+    }
+  }
+  return all;
 }
 
 /** The reason why a number is missing, if the metrics contain it. */

@@ -20,10 +20,12 @@ export interface Permalink {
   show: string;
   /** Pictures of all runs, not only of the main one. */
   sideBySide: boolean;
+  /** The study whose page is open, '' = the page without a study; null = it is closed. */
+  study: string | null;
 }
 
 /**
- * "#layout=NAME&run=ID&run=ID@OFFSET&main=ID&view=VIEW&show=PARTS&pictures=main&t=SECONDS": OFFSET in
+ * "#layout=NAME&study=NAME&run=ID&run=ID@OFFSET&main=ID&view=VIEW&show=PARTS&pictures=main&t=SECONDS": OFFSET in
  * seconds, by default 0. Unknown parts are ignored.
  */
 export function parsePermalink(hash: string): Permalink {
@@ -38,14 +40,16 @@ export function parsePermalink(hash: string): Permalink {
     view: fields.get('view') ?? '',
     show: fields.get('show') ?? '',
     sideBySide: fields.get('pictures') !== 'main',
+    study: fields.get('study'),
   };
 }
 
 export function formatPermalink(link: Permalink): string {
-  const { runs, main, t_ns, layout, view, show, sideBySide } = link;
+  const { runs, main, t_ns, layout, view, show, sideBySide, study } = link;
   const fields = new URLSearchParams();
   if (layout !== null) fields.set('layout', layout);
-  if (runs.length === 0) return layout === null ? '' : `#${fields.toString()}`;
+  if (study !== null) fields.set('study', study);
+  if (runs.length === 0) return fields.size === 0 ? '' : `#${fields.toString()}`;
   for (const { id, offset_ns } of runs) {
     fields.append('run', offset_ns === 0 ? id : `${id}@${(offset_ns / 1e9).toFixed(3)}`);
   }

@@ -28,6 +28,8 @@ import type { SceneLook } from './scene/scene_look';
 import { usualLook } from './scene/scene_look';
 import type { SweepPage } from './sweeps/sweep_page';
 import { initialSweepPage } from './sweeps/sweep_page';
+import type { StudyPage } from './studies/study_page';
+import { initialStudyPage } from './studies/study_page';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
@@ -92,6 +94,7 @@ export class State {
   calibrationPage: CalibrationPage = initialCalibrationPage();
   missionPage: MissionPage = initialMissionPage();
   sweepPage: SweepPage = initialSweepPage();
+  studyPage: StudyPage = initialStudyPage();
 
   // ---- the main run ----------------------------------------------------------------------------
 
@@ -193,6 +196,7 @@ const kTopicNames = [
   'missions',
   'missionCursor',
   'sweeps',
+  'studies',
   'layout',
   'theme',
   'palette',

@@ -8,18 +8,21 @@ import type { Context } from './view';
 const kWrite_ms = 400;
 
 export function followAddress(context: Context): void {
-  const { store, session, layouts } = context;
+  const { store, session, layouts, studies } = context;
   const open = () => {
-    const { runs, main, t_ns, layout, view, show, sideBySide } = parsePermalink(location.hash);
+    const link = parsePermalink(location.hash);
+    const { runs, main, t_ns, layout, view, show, sideBySide, study } = link;
     if (layout !== null && layout !== layouts.shared) layouts.choose(layout);
     context.scene.apply(lookFrom(view, show));
     session.setSideBySide(sideBySide);
     session.showRuns(runs, main, t_ns);
+    if (study !== null) void studies.openAt(study);
+    else if (store.state.studyPage.open) studies.close();
   };
   window.addEventListener('hashchange', open);
   if (location.hash !== '') open();
   window.setInterval(() => {
-    const { watched, runId, clock, scene, sideBySide } = store.state;
+    const { watched, runId, clock, scene, sideBySide, studyPage } = store.state;
     if (runId !== null && clock === null) return;
     const t_ns = clock === null || clock.live ? null : clock.t_ns;
     const hash = formatPermalink({
@@ -30,6 +33,7 @@ export function followAddress(context: Context): void {
       view: viewText(scene),
       show: showText(scene),
       sideBySide,
+      study: studyPage.open ? (studyPage.name ?? '') : null,
     });
     if (hash !== location.hash)
       history.replaceState(null, '', hash === '' ? location.pathname : hash);

@@ -1,5 +1,6 @@
 // Everything that the command palette offers.
 import type { Command } from '../store/palette';
+import { failedEstimators } from '../store/studies/study_form';
 import { kPanelNames, kPanels } from '../store/layouts/panel_names';
 import { kReadyLayouts } from '../store/layouts/ready_layouts';
 import { kSceneParts } from '../store/scene/scene_look';
@@ -17,6 +18,7 @@ export function commandsOf(context: Context): Command[] {
     ...themeCommands(context),
     ...shortcutCommands(context),
     ...pageCommands(context),
+    ...studyCommands(context),
     ...runCommands(context),
   ];
 }
@@ -101,6 +103,7 @@ function pageCommands({
   logs,
   missions,
   scores,
+  studies,
   sweeps,
 }: Context): Command[] {
   const group = 'Page';
@@ -118,6 +121,13 @@ function pageCommands({
       title: 'Sweeps of many flights',
       words: 'matrix table experiment success rate envelope',
       run: () => void sweeps.open(),
+    },
+    {
+      id: 'studies',
+      group,
+      title: 'Studies: causes, risks, worst flights',
+      words: 'explain predict hunt failure results',
+      run: () => void studies.open(),
     },
     {
       id: 'scoring',
@@ -140,6 +150,39 @@ function pageCommands({
       group,
       title: 'Edit the scenario as JSON',
       run: () => void catalogue.openEditor(),
+    },
+  ];
+}
+
+function studyCommands({ catalogue, store, studies }: Context): Command[] {
+  const group = 'Study';
+  const { run } = store.state;
+  const failed = run !== null && failedEstimators(run).length > 0;
+  return [
+    ...(failed
+      ? [
+          {
+            id: 'explain run',
+            group,
+            title: `Explain why ${failedEstimators(run).join(', ')} failed`,
+            words: 'cause reason lost',
+            run: () => void studies.explain(run),
+          },
+        ]
+      : []),
+    {
+      id: 'predict',
+      group,
+      title: 'Predict where the scenario is risky',
+      words: 'risk before flight map',
+      run: () => void studies.prepare('predict', catalogue.chosen()),
+    },
+    {
+      id: 'hunt',
+      group,
+      title: 'Hunt the worst flight of the scenario',
+      words: 'search failure limits',
+      run: () => void studies.prepare('hunt', catalogue.chosen()),
     },
   ];
 }

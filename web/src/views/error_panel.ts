@@ -13,7 +13,7 @@ import {
   textureLimited,
 } from '../store/error_table';
 import { formatNumber, kNothing } from '../store/format';
-import type { Metrics } from '../protocol/rest_types';
+import type { Metrics, Run } from '../protocol/rest_types';
 import type { State, Topic } from '../store/state';
 import type { Track } from '../store/tracks';
 import { tracksOf } from '../store/tracks';
@@ -108,11 +108,11 @@ export class ErrorPanel implements View {
         'tbody',
         {},
         stateRow(tracks),
-        outcomeRow(table),
-        ...table.rows.map(({ cells, cellHints, ...row }) =>
+        this.outcomeRow(table, tracks),
+        ...table.rows.map(({ cells, cellHints, bad, ...row }) =>
           tableRow(
             row,
-            cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '')),
+            cells.map((cell, i) => figureCell(cell, cellHints[i] ?? '', bad?.[i] === true)),
           ),
         ),
         textureRow(textures),
@@ -120,6 +120,41 @@ export class ErrorPanel implements View {
     ]);
     setAttribute(this.table, 'data-alignment', scored ? state.alignment : null);
     this.drawStates(state);
+  }
+
+  private outcomeRow(table: ErrorTable, tracks: readonly Track[]): HTMLElement {
+    const row = {
+      key: 'outcome',
+      label: 'Outcome',
+      unit: '',
+      hint: 'For the whole flight. INIT_LATE: tracking started later than 10 s or a tenth of the flight',
+    };
+    return tableRow(
+      row,
+      table.estimators.map(({ name, outcome, good }, i) => {
+        if (outcome === kNothing) return h('td', { class: 'pending' }, 'not scored yet');
+        const run = tracks[i]?.run.run ?? null;
+        return h(
+          'td',
+          { class: good ? 'good' : 'bad', title: outcome },
+          outcome,
+          good || run === null ? null : this.explainButton(run, name),
+        );
+      }),
+    );
+  }
+
+  private explainButton(run: Run, estimator: string): HTMLElement {
+    return h(
+      'button',
+      {
+        class: 'explain',
+        'data-role': 'explain-estimator',
+        title: `Find out why ${estimator} failed: fly it again with one cause changed at a time`,
+        onclick: () => void this.context.studies.explain(run, estimator),
+      },
+      'Explain',
+    );
   }
 
   private drawStates(state: State): void {
@@ -168,23 +203,6 @@ function stateRow(tracks: Track[]): HTMLElement {
   );
 }
 
-function outcomeRow(table: ErrorTable): HTMLElement {
-  const row = {
-    key: 'outcome',
-    label: 'Outcome',
-    unit: '',
-    hint: 'For the whole flight. INIT_LATE: tracking started later than 10 s or a tenth of the flight',
-  };
-  return tableRow(
-    row,
-    table.estimators.map(({ outcome, good }) =>
-      outcome === kNothing
-        ? h('td', { class: 'pending' }, 'not scored yet')
-        : h('td', { class: good ? 'good' : 'bad', title: outcome }, outcome),
-    ),
-  );
-}
-
 interface Texture {
   /** Number of its estimators. */
   columns: number;
@@ -215,11 +233,14 @@ function textureRow(textures: Texture[]): HTMLElement {
   return tableRow(row, cells);
 }
 
-function figureCell(text: string, hint: string): HTMLElement {
-  return hint === '' ? h('td', {}, text) : h('td', { class: 'bad', title: hint }, text);
+function figureCell(text: string, hint: string, bad: boolean): HTMLElement {
+  return h('td', { class: bad ? 'bad' : '', title: hint === '' ? undefined : hint }, text);
 }
 
-function tableRow(row: Omit<ErrorRow, 'cells' | 'cellHints'>, cells: HTMLElement[]): HTMLElement {
+function tableRow(
+  row: Omit<ErrorRow, 'cells' | 'cellHints' | 'bad'>,
+  cells: HTMLElement[],
+): HTMLElement {
   const head = h('th', { scope: 'row', title: row.hint }, row.label);
   if (row.unit !== '') head.append(h('span', { class: 'unit' }, row.unit));
   return h('tr', { 'data-row': row.key }, head, ...cells);

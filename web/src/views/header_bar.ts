@@ -178,6 +178,12 @@ function pageButtons(context: Context): HTMLElement[] {
     pageButton('sweeps', 'Sweeps', 'Many flights with changed fields, and what they found', () =>
       context.sweeps.open(),
     ),
+    pageButton(
+      'studies',
+      'Studies',
+      'Why a run failed, where a flight is risky, which flight is the worst',
+      () => context.studies.open(),
+    ),
     pageButton('scores', 'Score files', 'Score trajectories of files, runs and logs', () =>
       context.scores.open(),
     ),

@@ -53,9 +53,7 @@ export class Launcher implements View {
         novalidate: true,
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
-          void context.catalogue.launch(
-            new Map(this.fields.map(({ spec, read }) => [spec.path, read()])),
-          );
+          void context.catalogue.launch(this.texts());
         },
       },
       this.picker,
@@ -63,6 +61,12 @@ export class Launcher implements View {
       this.fieldArea,
       this.errors,
       h('div', { class: 'launch-buttons' }, this.button, this.editor),
+      h(
+        'div',
+        { class: 'launch-buttons' },
+        this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
+        this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
+      ),
     );
     this.editor.addEventListener('click', () => void context.catalogue.openEditor());
     panel.body.append(form);
@@ -90,6 +94,27 @@ export class Launcher implements View {
         'Connect',
       ),
     );
+  }
+
+  private texts(): Map<string, string> {
+    return new Map(this.fields.map(({ spec, read }) => [spec.path, read()]));
+  }
+
+  /** Prepares a study of the scenario with the form's values. */
+  private studyButton(kind: 'predict' | 'hunt', label: string, title: string): HTMLElement {
+    const { catalogue, studies } = this.context;
+    const prepare = () => {
+      const source = catalogue.asked(this.texts());
+      if (source !== null) void studies.prepare(kind, source);
+    };
+    const role = `open-${kind}`;
+    const button = h(
+      'button',
+      { class: 'secondary', type: 'button', 'data-role': role, title },
+      label,
+    );
+    button.addEventListener('click', prepare);
+    return button;
   }
 
   update(changed: ReadonlySet<Topic>): void {

@@ -1,5 +1,5 @@
 // The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera,
-// missions, sweeps.
+// missions, sweeps, studies.
 import { isLayoutFile } from '../store/layouts/layout_file';
 import { PageOverlay } from './page_overlay';
 import type { Context, View } from './view';
@@ -36,6 +36,12 @@ export function makePages(context: Context): View[] {
       topic: 'sweeps',
       page: ({ sweepPage }) => sweepPage,
       load: async (owner) => new (await import('./sweeps/sweep_page')).SweepPageView(owner),
+    }),
+    new PageOverlay(context, {
+      name: 'studies',
+      topic: 'studies',
+      page: ({ studyPage }) => studyPage,
+      load: async (owner) => new (await import('./studies/study_page')).StudyPageView(owner),
     }),
   ];
 }

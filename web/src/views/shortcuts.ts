@@ -198,6 +198,16 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.calibrationPage.open = false;
   store.state.missionPage.open = false;
   store.state.sweepPage.open = false;
-  store.change('help', 'logs', 'missions', 'palette', 'scoring', 'calibration', 'sweeps');
+  store.state.studyPage.open = false;
+  store.change(
+    'help',
+    'logs',
+    'missions',
+    'palette',
+    'scoring',
+    'calibration',
+    'sweeps',
+    'studies',
+  );
   layouts.restore();
 }

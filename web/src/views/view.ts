@@ -12,6 +12,7 @@ import type { Catalogue } from '../store/catalogue';
 import type { LayoutExchange } from '../store/layouts/layout_exchange';
 import type { Layouts } from '../store/layouts/layouts';
 import type { MissionDesk } from '../store/missions/mission_desk';
+import type { StudyDesk } from '../store/studies/study_desk';
 import type { SweepDesk } from '../store/sweeps/sweep_desk';
 import type { RestClient } from '../connection/rest_client';
 import type { LogBrowser } from '../store/logs/log_browser';
@@ -50,6 +51,7 @@ export interface Context {
   calibration: CalibrationDesk;
   missions: MissionDesk;
   sweeps: SweepDesk;
+  studies: StudyDesk;
   rest: RestClient;
   notices: Notices;
   client: StreamClient;

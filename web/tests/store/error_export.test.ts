@@ -37,7 +37,9 @@ describe('exportErrors', () => {
     expect(lines[0]).toContain(
       'run,title,estimator,outcome,outcome_time_s,coverage,alignment,scale',
     );
-    expect(lines[1]).toBe('r1,"a, ""b""",feature,LOST,3.14159,0.5,init_scale,-2,1.5,,,,,3.5,,,,,');
+    expect(lines[1]).toBe(
+      'r1,"a, ""b""",feature,LOST,3.14159,0.5,init_scale,-2,1.5,,,,,3.5,,,,,,,,,,,,,,,,,,,,,',
+    );
     expect(lines[2]).toContain('sim3,1,0.1234567890123,');
   });
 

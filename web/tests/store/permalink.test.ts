@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { formatPermalink, parsePermalink } from '../../src/store/permalink';
 
-const kUsual = { view: '', show: '', sideBySide: true };
+const kUsual = { view: '', show: '', sideBySide: true, study: null };
 const alone = (id: string) => [{ id, offset_ns: 0 }];
 
 describe('permalink', () => {
@@ -14,6 +14,7 @@ describe('permalink', () => {
       view: 'orbit,10.0,20.0,300,fixed',
       show: 'aircraft,image',
       sideBySide: false,
+      study: '20260102-120000-hunt-abc123',
     };
     expect(parsePermalink(formatPermalink(link))).toEqual(link);
   });
@@ -38,6 +39,13 @@ describe('permalink', () => {
     expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: 'fly', ...kUsual })).toBe(
       '#layout=fly',
     );
+  });
+
+  it('has the study whose page is open, also without a run', () => {
+    const link = { runs: [], main: null, t_ns: null, layout: null, ...kUsual, study: '' };
+    expect(formatPermalink(link)).toBe('#study=');
+    expect(parsePermalink('#study=')).toEqual(link);
+    expect(parsePermalink('#layout=fly&study=a').study).toBe('a');
   });
 
   it('takes a run once', () => {

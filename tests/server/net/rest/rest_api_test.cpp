@@ -86,6 +86,8 @@ class RestApiTest : public ::testing::Test {
   void check_sweeps();
   /// Those that start sweeps.
   void check_sweep_starts();
+  /// Every route of studies.
+  void check_studies();
   /// Every route of calibrations.
   void check_calibrations();
   void wait_until_solved(const std::string& session);
@@ -159,6 +161,48 @@ void RestApiTest::check_sweep_starts() {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   check("POST", go_on, all + "/own/continue", 202, "{}", kJson);
+}
+
+void RestApiTest::check_studies() {
+  const std::string all = "/api/v1/studies";
+  EXPECT_TRUE(check("GET", all, all, 200).json().at("studies").empty());
+  const auto post = [&](const std::string& body, int status) {
+    return check("POST", all, all, status, body, kJson);
+  };
+  post("{}", 400);
+  post(R"({"kind": "explain", "run": "none"})", 404);
+  check("POST", all, all, 415, "{}");
+  const Answer started = post(R"({"kind": "predict", "scenario": "tiny"})", 201);
+  const std::string study = started.headers.at("location");
+  const std::string one = all + "/{name}";
+  const auto state = [&] {
+    return check("GET", one, study, 200).json().at("study").at("state").get<std::string>();
+  };
+  // Its program is /bin/false.
+  for (int turns = 0; turns < 1000 && state() != "failed"; ++turns) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(state(), "failed");
+  check("GET", all, all, 200);
+  check("GET", one + "/page", study + "/page", 404);
+  const std::filesystem::path folder =
+      server_.folder() / "studies" / started.json().at("name").get<std::string>();
+  write_text(folder / "predict.html", "<h1>Risk</h1>");
+  check("GET", one + "/page", study + "/page", 200);
+  check("GET", one + "/worst", study + "/worst", 404);
+  write_text(folder / "worst.json", "{}");
+  check("GET", one + "/worst", study + "/worst", 200);
+  write_text(folder / "predict.json", "{");
+  check("GET", one, study, 422);
+  check("POST", one + "/cancel", study + "/cancel", 409);
+  check("POST", one + "/continue", study + "/continue", 202);
+  for (int turns = 0; turns < 1000; ++turns) {
+    const Answer removed = ask(server_.port(), "DELETE", study);
+    if (removed.status == 204) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  check("DELETE", one, study, 404);
+  check("POST", one + "/continue", study + "/continue", 404);
 }
 
 void RestApiTest::wait_until_solved(const std::string& session) {
@@ -267,6 +311,7 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("DELETE", scenario, mine, 204);
   check("DELETE", scenario, mine, 404);
   check_sweeps();
+  check_studies();
   const std::string checks = "/api/v1/scenario-check";
   const auto checked = [&](const json& document, int status) {
     return check("POST", checks, checks, status, json{{"document", document}}.dump(), kJson);

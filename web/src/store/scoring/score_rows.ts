@@ -1,6 +1,8 @@
 // The table of scores: one row for each estimate and alignment.
 import type { Evaluation, ScoredErrors } from '../../protocol/score_types';
 import { kDefaultAlignment } from '../error_table';
+import type { FixFigure } from '../fix_errors';
+import { fixCsvValues, fixFigures, kFixCsvHead } from '../fix_errors';
 import { formatNumber, formatPercent, numberOf } from '../format';
 import type { TextFormat } from '../table_text';
 import { csvTable, latexTable, markdownTable } from '../table_text';
@@ -28,22 +30,33 @@ export interface ScoreRow {
   index: number;
   alignment: string;
   values: (number | null)[];
+  /** As scoreFixFigures(). */
+  extras: { text: string; bad: boolean }[];
   /** Warnings, and why values are missing. */
   hints: string[];
   failed: boolean;
 }
 
-export function scoreRows({ estimates }: Evaluation): ScoreRow[] {
+/** Drift between position fixes and honesty, where any estimate has them. */
+export function scoreFixFigures({ estimates }: Evaluation): FixFigure[] {
+  return fixFigures(estimates.flatMap(({ alignments }) => Object.values(alignments ?? {})));
+}
+
+export function scoreRows(evaluation: Evaluation): ScoreRow[] {
+  const { estimates } = evaluation;
+  const figures = scoreFixFigures(evaluation);
   return estimates.flatMap(({ name, alignments, warnings, error }, index): ScoreRow[] => {
     const base = { estimate: name, index };
     if (error !== undefined) {
       const none = kScoreFigures.map(() => null);
-      return [{ ...base, alignment: '', values: none, hints: [error.message], failed: true }];
+      const hints = [error.message];
+      return [{ ...base, alignment: '', values: none, extras: [], hints, failed: true }];
     }
     return Object.entries(alignments ?? {}).map(([alignment, errors]) => ({
       ...base,
       alignment,
       values: kScoreFigures.map(({ key }) => numberOf(errors[key])),
+      extras: figures.map(({ text, bad }) => ({ text: text(errors), bad: bad(errors) })),
       hints: [...(warnings ?? []), errors.degenerate ?? '', errors.error ?? ''].filter(
         (hint) => hint !== '',
       ),
@@ -82,27 +95,30 @@ export function exportScores(evaluation: Evaluation, format: TextFormat): string
   const rows = scoreRows(evaluation);
   if (format === 'CSV') {
     const keys = kScoreFigures.map(({ key }) => key);
+    const errorsOf = ({ index, alignment }: ScoreRow) =>
+      evaluation.estimates[index]?.alignments?.[alignment] ?? {};
     return csvTable(
-      ['truth', 'estimate', 'alignment', ...keys],
-      rows.map(({ estimate, alignment, values }) => [
+      ['truth', 'estimate', 'alignment', ...keys, ...kFixCsvHead],
+      rows.map((row) => [
         evaluation.truth.name,
-        estimate,
-        alignment,
-        ...values.map((value) => value ?? ''),
+        row.estimate,
+        row.alignment,
+        ...row.values.map((value) => value ?? ''),
+        ...fixCsvValues(errorsOf(row)),
       ]),
     );
   }
-  const labels = kScoreFigures.map(({ label, unit }) =>
-    unit === '' ? label : `${label} [${unit}]`,
-  );
+  const figures = [...kScoreFigures, ...scoreFixFigures(evaluation)];
+  const labels = figures.map(({ label, unit }) => (unit === '' ? label : `${label} [${unit}]`));
   const table = {
     head: ['Estimate', 'Alignment', ...labels],
-    rows: rows.map(({ estimate, alignment, values }) => [
+    rows: rows.map(({ estimate, alignment, values, extras }) => [
       shortName(estimate),
       alignment,
       ...values.map((value, i) => formatNumber(value, kScoreFigures[i]?.digits ?? 3)),
+      ...extras.map(({ text }) => text),
     ]),
-    numbers: kScoreFigures.length,
+    numbers: labels.length,
   };
   return format === 'Markdown' ? markdownTable(table) : latexTable(table);
 }

@@ -7,6 +7,7 @@ import { matching } from '../../store/runs/run_search';
 import type { EstimatorResult, Run } from '../../protocol/rest_types';
 import { isActive } from '../../protocol/rest_types';
 import type { Topic } from '../../store/state';
+import { failedEstimators } from '../../store/studies/study_form';
 import { h, rebuild } from '../dom';
 import { icon } from '../icons';
 import type { Panel } from '../panel';
@@ -122,6 +123,7 @@ export class RunList implements View {
       h(
         'span',
         { class: 'run-buttons' },
+        ...this.explainButton(run),
         this.notesButton(run),
         this.repeatButton(run),
         this.compareButton(run),
@@ -151,6 +153,25 @@ export class RunList implements View {
         ? []
         : [h('span', { class: 'chip small', 'data-role': 'note', title: run.note }, 'note')];
     return [...tags, ...note];
+  }
+
+  /** Only where an estimator failed. */
+  private explainButton(run: Run): HTMLElement[] {
+    const failed = failedEstimators(run);
+    if (failed.length === 0) return [];
+    return [
+      h(
+        'button',
+        {
+          class: 'icon-button',
+          title: `Explain why ${failed.join(', ')} failed`,
+          'aria-label': `Explain the failure: ${run.title}`,
+          'data-role': 'explain',
+          onclick: () => void this.context.studies.explain(run),
+        },
+        icon('question'),
+      ),
+    ];
   }
 
   private notesButton(run: Run): HTMLElement {

@@ -8,6 +8,7 @@ import {
   kScoreFigures,
   offsetTexts,
   scoreAlignments,
+  scoreFixFigures,
   scoreRows,
 } from '../../store/scoring/score_rows';
 import { shortName } from '../../store/scoring/score_desk';
@@ -210,6 +211,7 @@ export class ScorePageView implements View {
     this.table.hidden = rows.length === 0;
     const offsets = scores === null ? [] : offsetTexts(scores);
     rebuild(this.offsets, JSON.stringify(offsets), () => offsets.map((text) => h('li', {}, text)));
+    const figures = [...kScoreFigures, ...(scores === null ? [] : scoreFixFigures(scores))];
     rebuild(this.table, JSON.stringify(rows), () => [
       h(
         'thead',
@@ -219,12 +221,12 @@ export class ScorePageView implements View {
           {},
           h('th', {}, 'Trajectory'),
           h('th', {}, 'Alignment'),
-          ...kScoreFigures.map(({ label, unit }) =>
+          ...figures.map(({ label, unit }) =>
             h('th', { scope: 'col' }, label, h('span', { class: 'unit' }, ` ${unit}`)),
           ),
         ),
       ),
-      h('tbody', {}, ...rows.map((row) => tableRow(row))),
+      h('tbody', {}, ...rows.map((row) => tableRow(row, figures.length))),
     ]);
   }
 
@@ -237,12 +239,13 @@ export class ScorePageView implements View {
   }
 }
 
-function tableRow({ estimate, index, alignment, values, hints, failed }: ScoreRow): HTMLElement {
+/** @param figures  number of columns with figures */
+function tableRow(row: ScoreRow, figures: number): HTMLElement {
+  const { estimate, index, alignment, values, extras, hints, failed } = row;
   const colour = `color:${estimateColour(index)}`;
   const head = h('th', { scope: 'row', title: estimate, style: colour }, shortName(estimate));
   if (failed) {
-    const columns = kScoreFigures.length + 1;
-    return h('tr', {}, head, h('td', { colspan: columns, class: 'bad' }, hints.join(' ')));
+    return h('tr', {}, head, h('td', { colspan: figures + 1, class: 'bad' }, hints.join(' ')));
   }
   const mark = hints.length === 0 ? null : h('span', { class: 'chip small warn' }, '!');
   return h(
@@ -257,5 +260,6 @@ function tableRow({ estimate, index, alignment, values, hints, failed }: ScoreRo
         value === null ? kNothing : formatNumber(value, kScoreFigures[i]?.digits ?? 3),
       ),
     ),
+    ...extras.map(({ text, bad }) => h('td', { class: bad ? 'bad' : '' }, text)),
   );
 }

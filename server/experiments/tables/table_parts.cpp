@@ -1,0 +1,32 @@
+#include "server/experiments/tables/table_parts.hpp"
+
+namespace overfly::server::experiments {
+
+void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns) {
+  for (const ShownAxis& axis : scores.axes) {
+    columns.push_back({axis.label + (axis.unit.empty() ? "" : " [" + axis.unit + "]"), true});
+  }
+}
+
+std::vector<TableCell> axis_cells(const SweepScores& scores, const nlohmann::json& cell) {
+  std::vector<TableCell> cells;
+  for (const ShownAxis& axis : scores.axes) {
+    const auto found = cell.find(axis.name);
+    const bool absent = found == cell.end();
+    cells.push_back({absent               ? ""
+                     : found->is_string() ? found->get<std::string>()
+                                          : found->dump(),
+                     false});
+  }
+  return cells;
+}
+
+std::string quartiles_text(const std::optional<Spread>& spread,
+                           const std::optional<Spread>& position) {
+  if (!spread) return position ? "-" : "X";
+  if (spread->flights < 2) return error_number(spread->quartiles.median);
+  return error_number(spread->quartiles.median) + " [" + error_number(spread->quartiles.low) +
+         ", " + error_number(spread->quartiles.high) + "]";
+}
+
+}  // namespace overfly::server::experiments

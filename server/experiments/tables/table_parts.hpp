@@ -1,0 +1,24 @@
+// Parts that the tables of a sweep share: columns and cells of the axes, text of a spread.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/experiments/tables/sweep_tables.hpp"
+
+namespace overfly::server::experiments {
+
+void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns);
+
+/// The values of the axes in a cell of the sweep.
+[[nodiscard]] std::vector<TableCell> axis_cells(const SweepScores& scores,
+                                                const nlohmann::json& cell);
+
+/// "1.23 [1.1, 1.4]"; X if no flight counts, - if those that count have no such value.
+/// @param position  of the same flights
+[[nodiscard]] std::string quartiles_text(const std::optional<Spread>& spread,
+                                         const std::optional<Spread>& position);
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,176 @@
+// Studies: why a run failed, where a flight is risky, which flight is the worst.
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "server/net/http/error_response.hpp"
+#include "server/net/rest/rest_api.hpp"
+#include "server/net/rest/rest_study_request.hpp"
+
+namespace overfly::net {
+namespace {
+
+namespace experiments = server::experiments;
+using experiments::StudyRefusal;
+using experiments::StudyService;
+using nlohmann::json;
+using Cancel = const std::atomic<bool>*;
+
+HttpResponse study_refused(StudyRefusal refusal, const Error& error) {
+  switch (refusal) {
+    case StudyRefusal::kNone:
+      break;
+    case StudyRefusal::kOff:
+    case StudyRefusal::kForbidden:
+      return error_response(403, "forbidden", error.message);
+    case StudyRefusal::kMemory:
+      return error_response(422, "not_enough_memory", error.message);
+    case StudyRefusal::kFull:
+      return error_response(429, "too_many_studies", error.message);
+  }
+  return error_response(error);
+}
+
+HttpResponse study_response(const StudyService& studies, const std::string& name, int status) {
+  const Result<json> entry = studies.entry(name);
+  if (!entry) return error_response(entry.error());
+  HttpResponse response = json_response(status, *entry);
+  if (status == 201) response.headers.emplace_back("Location", "/api/v1/studies/" + name);
+  return response;
+}
+
+HttpResponse start_study(StudyService& studies,
+                         const experiments::StudyRequest& request,
+                         Cancel cancel) {
+  StudyRefusal refusal = StudyRefusal::kNone;
+  const Result<std::string> name = studies.start(request, refusal, cancel);
+  return name ? study_response(studies, *name, 201) : study_refused(refusal, name.error());
+}
+
+/// The page runs no script and loads nothing, in a window of its own too: its texts come from
+/// scenarios.
+HttpResponse page_response(const std::string& text) {
+  HttpResponse response;
+  response.status = 200;
+  response.content_type = "text/html; charset=utf-8";
+  response.headers.emplace_back("Content-Security-Policy",
+                                "sandbox; default-src 'none'; img-src data:; style-src "
+                                "'unsafe-inline'; frame-ancestors 'self'; form-action 'none'; "
+                                "base-uri 'none'");
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = text;
+  return response;
+}
+
+void add_study_actions(RestRouter* router, const StudyRoutes& routes) {
+  StudyService* const studies = routes.studies;
+  router->add("POST",
+              "/api/v1/studies/{name}/continue",
+              [routes, studies](const RouteCall& call, const Respond& respond) {
+                respond_from_reader(
+                    routes.readers,
+                    "a study",
+                    call,
+                    respond,
+                    [studies, name = call.path.at("name")](Cancel) {
+                      StudyRefusal refusal = StudyRefusal::kNone;
+                      const Status status = studies->go_on(name, refusal);
+                      return Result<HttpResponse>(status ? study_response(*studies, name, 202)
+                                                         : study_refused(refusal, status.error()));
+                    });
+              });
+  router->add(
+      "POST",
+      "/api/v1/studies/{name}/cancel",
+      [studies](const RouteCall& call, const Respond& respond) {
+        const std::string& name = call.path.at("name");
+        const Status status = studies->cancel(name);
+        respond(status ? study_response(*studies, name, 202) : error_response(status.error()));
+      });
+  router->add("DELETE",
+              "/api/v1/studies/{name}",
+              [routes, studies](const RouteCall& call, const Respond& respond) {
+                respond_from_reader(
+                    routes.readers,
+                    "a study",
+                    call,
+                    respond,
+                    [studies, name = call.path.at("name")](Cancel) {
+                      const Status status = studies->remove(name);
+                      HttpResponse gone;
+                      gone.status = 204;
+                      return Result<HttpResponse>(status ? gone : error_response(status.error()));
+                    });
+              });
+}
+
+}  // namespace
+
+void add_study_routes(RestRouter* router, const StudyRoutes& routes) {
+  StudyService* const studies = routes.studies;
+  router->add(
+      "GET", "/api/v1/studies", [routes, studies](const RouteCall& call, const Respond& respond) {
+        read_and_answer(routes.readers, "studies", call, respond, [studies](Cancel) {
+          json list = studies->list();
+          list["limits"] = study_limits_json();
+          return Result<json>(std::move(list));
+        });
+      });
+  router->add(
+      "POST", "/api/v1/studies", [routes, studies](const RouteCall& call, const Respond& respond) {
+        if (auto refused = not_json(call.request)) return respond(std::move(*refused));
+        Result<experiments::StudyRequest> request = parse_study_request(call.request.body);
+        if (!request) return respond(error_response(request.error()));
+        respond_from_reader(routes.readers,
+                            "a study",
+                            call,
+                            respond,
+                            [studies, request = std::move(*request)](Cancel cancel) {
+                              return Result<HttpResponse>(start_study(*studies, request, cancel));
+                            });
+      });
+  router->add("GET",
+              "/api/v1/studies/{name}",
+              [routes, studies](const RouteCall& call, const Respond& respond) {
+                read_and_answer(
+                    routes.readers,
+                    "a study",
+                    call,
+                    respond,
+                    [studies, name = call.path.at("name")](Cancel) -> Result<json> {
+                      Result<json> entry = studies->entry(name);
+                      if (!entry) return entry.error();
+                      Result<json> result = studies->result(name);
+                      if (!result) return result.error();
+                      return json{{"study", std::move(*entry)}, {"result", std::move(*result)}};
+                    });
+              });
+  router->add("GET",
+              "/api/v1/studies/{name}/page",
+              [routes, studies](const RouteCall& call, const Respond& respond) {
+                respond_from_reader(
+                    routes.readers,
+                    "a study's page",
+                    call,
+                    respond,
+                    [studies, name = call.path.at("name")](Cancel) -> Result<HttpResponse> {
+                      const Result<std::string> page = studies->page(name);
+                      if (!page) return page.error();
+                      return page_response(*page);
+                    });
+              });
+  router->add("GET",
+              "/api/v1/studies/{name}/worst",
+              [routes, studies](const RouteCall& call, const Respond& respond) {
+                read_and_answer(routes.readers,
+                                "a hunt's worst flight",
+                                call,
+                                respond,
+                                [studies, name = call.path.at("name")](Cancel) {
+                                  return studies->worst(name);
+                                });
+              });
+  add_study_actions(router, routes);
+}
+
+}  // namespace overfly::net
