@@ -65,6 +65,7 @@ Status FlightProcesses::start(const FlightJob& job) {
   std::vector<std::string> words{
       program_.string(), "run", job.scenario.string(), "--out", job.folder.string(), "--quiet"};
   words.insert(words.end(), options_.begin(), options_.end());
+  words.insert(words.end(), job.options.begin(), job.options.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
