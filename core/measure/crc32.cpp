@@ -4,8 +4,10 @@
 
 namespace overfly {
 
-std::uint32_t crc32_of(const Image& image) {
-  return libdeflate_crc32(0, image.data.data(), image.data.size());
+std::uint32_t crc32_of(const Image& image) { return crc32_of(std::span(image.data)); }
+
+std::uint32_t crc32_of(std::span<const std::uint8_t> bytes) {
+  return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
 
 }  // namespace overfly

@@ -8,6 +8,8 @@
 #include "core/sensors/sample_source.hpp"
 #include "server/camera/flight_sensors.hpp"
 #include "server/camera/truth.hpp"
+#include "server/frame_cache/cached_renderer.hpp"
+#include "server/frame_cache/frame_key.hpp"
 #include "server/worlds/world_cache.hpp"
 
 namespace overfly::server {
@@ -115,6 +117,11 @@ Status FrameMaker::open_renderer() {
       make_renderer(scenario_, tiles_, options_.renderer_factory);
   if (!made) return made.error();
   renderer_ = std::move(*made);
+  const renderer::RendererInfo info = renderer_->info();
+  if (options_.frame_cache != nullptr && CachedRenderer::pays_for(info)) {
+    renderer_ = std::make_unique<CachedRenderer>(
+        std::move(renderer_), picture_context(scenario_, *opened_, info), *options_.frame_cache);
+  }
   return {};
 }
 

@@ -27,6 +27,7 @@
 
 namespace overfly::server {
 
+class FrameCache;
 class WorldCache;
 struct OpenedWorld;
 
@@ -43,6 +44,8 @@ struct FrameMakerOptions {
   TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null
   /// Date of the flight at t = 0. If given, the scenario's other sensors measure.
   std::optional<std::int64_t> sensing_from_utc_ns;
+  /// Pictures of earlier flights, and for later ones; may be null, must outlive the maker.
+  FrameCache* frame_cache = nullptr;
   /// Where the messages of a live vehicle are recorded; empty: nowhere.
   std::filesystem::path vehicle_log;
 };

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/runs/run_memory.hpp"
@@ -19,6 +20,7 @@ struct FlightJob {
   std::filesystem::path output;    ///< file for what the process prints
   double timeout_s = 0.0;
   RunMemory memory;
+  std::vector<std::string> options{};  ///< further ones of `overfly run`, on this machine only
 };
 
 /// A flight that has ended.

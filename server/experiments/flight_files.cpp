@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "core/outside/file_text.hpp"
 #include "server/files/whole_file.hpp"
@@ -56,7 +57,8 @@ bool FlightFiles::is_completed(const std::string& id) const {
 Status FlightFiles::launch(FlightExecutor& executor,
                            const std::string& id,
                            const Scenario& scenario,
-                           double timeout_s) const {
+                           double timeout_s,
+                           std::vector<std::string> options) const {
   std::error_code error;
   fs::remove_all(run(id), error);
   if (error) {
@@ -64,7 +66,8 @@ Status FlightFiles::launch(FlightExecutor& executor,
   }
   const fs::path file = folder_ / "scenarios" / (id + ".json");
   if (Status status = write_json(file, scenario.resolved); !status) return status;
-  return executor.start({id, file, run(id), output(id), timeout_s, memory_of(scenario)});
+  return executor.start(
+      {id, file, run(id), output(id), timeout_s, memory_of(scenario), std::move(options)});
 }
 
 std::string FlightFiles::failure(const EndedFlight& ended, double timeout_s) const {

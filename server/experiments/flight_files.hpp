@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/experiments/flight_executor.hpp"
@@ -19,11 +20,13 @@ class FlightFiles {
   [[nodiscard]] std::filesystem::path run(const std::string& id) const;
   [[nodiscard]] bool is_completed(const std::string& id) const;
   /// Starts the flight of a scenario. The run folder of a flight that was not completed is removed.
+  /// @param options  as FlightJob::options
   /// Errors: kIo; as FlightExecutor::start.
   [[nodiscard]] Status launch(FlightExecutor& executor,
                               const std::string& id,
                               const Scenario& scenario,
-                              double timeout_s) const;
+                              double timeout_s,
+                              std::vector<std::string> options) const;
   /// Why a flight that has ended has no results; empty if it has.
   [[nodiscard]] std::string failure(const EndedFlight& ended, double timeout_s) const;
 

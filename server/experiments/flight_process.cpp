@@ -30,6 +30,7 @@ Status FlightProcesses::start(const FlightJob& job) {
   std::vector<std::string> words{
       program_.string(), "run", job.scenario.string(), "--out", job.folder.string(), "--quiet"};
   words.insert(words.end(), options_.begin(), options_.end());
+  words.insert(words.end(), job.options.begin(), job.options.end());
   const Result<pid_t> pid = start_program(std::move(words), job.output);
   if (!pid) return pid.error();
   children_.push_back({*pid, job, Clock::now(), false});

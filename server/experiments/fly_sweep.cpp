@@ -5,6 +5,7 @@
 #include <chrono>
 #include <list>
 #include <memory>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -30,6 +31,10 @@ struct Flying {
   int attempts = 1;
 };
 
+std::string flight_text(const Json& cell, int repeat) {
+  return cell.dump() + " " + std::to_string(repeat);
+}
+
 class SweepFlyer {
  public:
   SweepFlyer(const Sweep& sweep,
@@ -41,8 +46,11 @@ class SweepFlyer {
         options_(options),
         executor_(std::move(executor)),
         files_(options.folder),
-        flown_{std::move(plan), std::move(results), {}, false} {
+        flown_{std::move(plan), std::move(results), {}, false, {}} {
     flown_.progress.most = flown_.plan.most_flights();
+    for (const auto& [key, result] : flown_.results.by_key()) {
+      if (result.completed()) flown_before_.insert(flight_text(result.cell, result.repeat));
+    }
   }
 
   Result<FlownSweep> fly() {
@@ -113,7 +121,28 @@ class SweepFlyer {
 
   Status launch(const Flying& flying) {
     const DueFlight& due = flying.due;
-    return files_.launch(*executor_, due.key, due.scenario, sweep_.timeout_s);
+    return files_.launch(
+        *executor_, due.key, due.scenario, sweep_.timeout_s, cache_options(flying));
+  }
+
+  /// A flight that other estimators have flown before is likely to be flown by more.
+  [[nodiscard]] std::vector<std::string> cache_options(const Flying& flying) const {
+    const DueFlight& due = flying.due;
+    if (options_.open_executor || options_.frame_cache.budget_gib <= 0.0) return {};
+    const SweepCell& cell = flown_.plan.cells()[due.cell];
+    return frame_cache_options(options_.frame_cache,
+                               options_.pictures_recur ||
+                                   flown_before_.contains(flight_text(cell.values, due.repeat)) ||
+                                   flown_.plan.shares_pictures(due));
+  }
+
+  void count_pictures_of(const EndedFlight& ended) {
+    if (options_.open_executor || options_.frame_cache.budget_gib <= 0.0) return;
+    const bool known = !flown_.pictures.problem.empty();
+    count_pictures(files_.run(ended.id), flown_.pictures);
+    if (!known && !flown_.pictures.problem.empty()) {
+      warn("frame cache: " + flown_.pictures.problem);
+    }
   }
 
   Status take_ended() {
@@ -129,6 +158,7 @@ class SweepFlyer {
     const auto flying = std::find_if(
         flying_.begin(), flying_.end(), [&](const Flying& f) { return f.due.key == ended.id; });
     flown_.progress.spent_s += ended.duration_s;
+    count_pictures_of(ended);
     std::string failure = files_.failure(ended, sweep_.timeout_s);
     RunMetrics metrics;
     if (failure.empty()) {
@@ -203,6 +233,7 @@ class SweepFlyer {
   std::unique_ptr<FlightExecutor> executor_;
   FlightFiles files_;
   FlownSweep flown_;
+  std::set<std::string> flown_before_;  ///< cells and repeats with results of an earlier call
   std::list<Flying> flying_;
   std::optional<DueFlight> waiting_;  ///< for memory
   std::size_t most_at_once_ = 1;      ///< flights that flew at the same time so far
@@ -290,7 +321,7 @@ Result<FlownSweep> read_sweep(const Sweep& sweep, const fs::path& folder) {
   if (!plan) return plan.error();
   Result<SweepResults> results = SweepResults::read(folder);
   if (!results) return results.error();
-  FlownSweep flown{std::move(*plan), std::move(*results), {}, false};
+  FlownSweep flown{std::move(*plan), std::move(*results), {}, false, {}};
   flown.progress.most = flown.plan.most_flights();
   // Every flight that is due is passed over, so that the plan reaches all known repeats.
   for (;;) {

@@ -11,6 +11,7 @@
 
 #include "core/result.hpp"
 #include "server/experiments/flight_executor.hpp"
+#include "server/experiments/pictures/flight_frame_cache.hpp"
 #include "server/experiments/sweep_plan.hpp"
 #include "server/experiments/sweep_progress.hpp"
 #include "server/experiments/sweep_results.hpp"
@@ -23,6 +24,10 @@ struct SweepOptions {
   std::filesystem::path program;            ///< this program, which flies single scenarios
   std::vector<std::string> flight_options;  ///< further options of `overfly run`
   std::size_t jobs = 1;  ///< flights given to the executor at the same time, if the memory suffices
+  /// Pictures are kept for flights that probably have the same ones: other repeats and cells, and
+  /// flights of changed estimators. Only used without open_executor.
+  FlightFrameCache frame_cache;
+  bool pictures_recur = false;  ///< flights of other calls probably have the same pictures
   /// Makes what flies the flights, when the folder is locked. Empty: processes of this machine.
   std::function<Result<std::unique_ptr<FlightExecutor>>()> open_executor;
   /// Memory for one more flight, for as long as the result lives; null while there is not enough.
@@ -39,6 +44,7 @@ struct FlownSweep {
   SweepResults results;
   SweepProgress progress;
   bool cancelled = false;
+  PictureCount pictures;  ///< of this call's flights
 };
 
 /// Flies every flight without a result. Results are kept in the folder: a call that was cancelled

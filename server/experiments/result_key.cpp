@@ -7,8 +7,8 @@
 #include "core/measure/sha256.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
-#include "server/files/build_info.hpp"
 #include "server/files/file_stamp.hpp"
+#include "server/files/program_identity.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -64,14 +64,6 @@ void add_named_files(const Json& value, const fs::path& folder, bool follow, Nam
   add_file((folder / name).lexically_normal(), follow, files);
 }
 
-/// A build of changed sources is known by its executable only.
-std::string program_text() {
-  const std::string commit = git_commit();
-  const bool exact = commit != "unknown" && !commit.ends_with("-dirty");
-  return version() + " " + commit +
-         (exact ? "" : " " + stamp_text(FileStamp::of("/proc/self/exe")));
-}
-
 }  // namespace
 
 std::string flight_key(const Scenario& scenario) {
@@ -79,7 +71,7 @@ std::string flight_key(const Scenario& scenario) {
   for (const char* name : {"$schema", "name", "title", "description", "estimators"}) {
     document.erase(name);
   }
-  NamedFiles files{scenario.sources, program_text() + "\n" + document.dump()};
+  NamedFiles files{scenario.sources, program_identity() + "\n" + document.dump()};
   add_named_files(document, "/", true, files);
   return digest_of(files.text);
 }

@@ -7,6 +7,7 @@
 #include "core/cancel.hpp"
 #include "core/measure/sha256.hpp"
 #include "evaluation/statistics/wilson.hpp"
+#include "server/experiments/pictures/picture_key.hpp"
 #include "server/experiments/result_key.hpp"
 
 namespace overfly::server::experiments {
@@ -50,9 +51,9 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
   SweepPlan plan(sweep, std::move(cells));
   std::string messages;
   int faults = 0;
-  for (const SweepCell& cell : plan.cells_) {
+  for (std::size_t i = 0; i < plan.cells_.size(); ++i) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
-    const Result<Scenario> scenario = scenario_of(sweep, cell, 0);
+    const Result<Scenario> scenario = scenario_of(sweep, plan.cells_[i], 0);
     if (!scenario) {
       if (++faults <= kMostMessages)
         messages += (faults > 1 ? "\n" : "") + scenario.error().message;
@@ -62,6 +63,8 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
       return Error{ErrorCode::kInvalidArgument,
                    sweep.scenario_file.string() + ": flight: must not be live in a sweep"};
     }
+    plan.states_[i].pictures = picture_key(*scenario);
+    ++plan.cells_with_pictures_[plan.states_[i].pictures];
     for (const EstimatorSpec& estimator : scenario->estimators) {
       if (std::find(plan.estimators_.begin(), plan.estimators_.end(), estimator.name) ==
           plan.estimators_.end()) {
@@ -140,6 +143,16 @@ Result<std::optional<DueFlight>> SweepPlan::next(const SweepResults& results) {
     if (!flight || *flight) return flight;
   }
   return std::optional<DueFlight>();
+}
+
+bool SweepPlan::shares_pictures(const DueFlight& flight) const {
+  const std::string& first = states_[flight.cell].pictures;
+  const auto cells = cells_with_pictures_.find(first);
+  if (cells != cells_with_pictures_.end() && cells->second > 1) return true;
+  if (sweep_->repeats.most < 2) return false;
+  if (flight.repeat > 0) return picture_key(flight.scenario) == first;
+  const Result<Scenario> second = scenario_of(*sweep_, cells_[flight.cell], 1);
+  return second && picture_key(*second) == first;
 }
 
 void SweepPlan::over(const DueFlight& flight) { --states_[flight.cell].flying; }

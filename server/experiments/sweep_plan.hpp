@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ class SweepPlan {
   /// The next flight that is due; empty if none is, or none before those flying are over.
   /// Errors: as scenario_of.
   [[nodiscard]] Result<std::optional<DueFlight>> next(const SweepResults& results);
+  /// Whether other flights of the plan probably have the same pictures.
+  [[nodiscard]] bool shares_pictures(const DueFlight& flight) const;
   /// A flight from next() is over: its results are known, or it is given up.
   void over(const DueFlight& flight);
 
@@ -57,6 +60,7 @@ class SweepPlan {
     int next_repeat = 0;
     int flying = 0;
     bool finished = false;
+    std::string pictures;  ///< picture_key of the first repeat
     /// Estimator -> keys of its repeats, as far as they were reached.
     std::map<std::string, std::vector<std::string>> keys;
   };
@@ -73,6 +77,7 @@ class SweepPlan {
   const Sweep* sweep_;
   std::vector<SweepCell> cells_;
   std::vector<State> states_;
+  std::map<std::string, int> cells_with_pictures_;  ///< picture_key -> number of cells
   std::vector<std::string> estimators_;
 };
 

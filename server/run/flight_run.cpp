@@ -94,6 +94,7 @@ nlohmann::json FlightRun::timings() const {
                             {"late_tiles", late_tiles_},
                             {"frames_with_late_tiles", frames_with_late_tiles_},
                             {"stages", stages_.summary()}};
+  if (frame_cache_) timings["frame_cache"] = json_from(frame_cache_->use());
   if (!message_to_frame_.ms.empty()) timings["message_to_frame"] = message_to_frame_.summary();
   return timings;
 }
@@ -109,6 +110,7 @@ Status FlightRun::fly() {
     ~Leaving() {
       run.workers_.clear();
       run.maker_.reset();
+      if (run.frame_cache_) run.frame_cache_->finish();
     }
   } const leaving{*this};
   const Status flown = prepare_and_fly();

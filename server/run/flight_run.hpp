@@ -15,6 +15,7 @@
 #include "server/estimators/estimator_factory.hpp"
 #include "server/estimators/estimator_worker.hpp"
 #include "server/estimators/truth_feed.hpp"
+#include "server/frame_cache/frame_cache.hpp"
 #include "server/run/estimate_feedback.hpp"
 #include "server/run/run_options.hpp"
 #include "server/run/run_recorder.hpp"
@@ -116,6 +117,7 @@ class FlightRun {
 
   /// By camera; empty before calibrate_cameras.
   std::vector<std::optional<CalibratedIntrinsics>> calibrated_;
+  std::unique_ptr<FrameCache> frame_cache_;  ///< null without; outlives the maker, which uses it
   std::unique_ptr<FrameMaker> maker_;
   FaultNews fault_news_;
   SaturationWatch saturation_;

@@ -52,6 +52,10 @@ Status FlightRun::open_maker() {
   options.sensing_from_utc_ns = epoch_utc_ns();
   options.vehicle_log = vehicle_log_file(options_.folder);
   options.wait_for_tiles = scenario_.pacing == Pacing::kLockstep;
+  if (options_.frame_cache && options.wait_for_tiles && !scenario_.is_live()) {
+    frame_cache_ = std::make_unique<FrameCache>(*options_.frame_cache, options_.warn);
+    options.frame_cache = frame_cache_.get();
+  }
   Result<std::unique_ptr<FrameMaker>> maker = FrameMaker::open(scenario_, options);
   if (!maker) return maker.error();
   maker_ = std::move(*maker);

@@ -13,6 +13,7 @@
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/file_limits.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/hunt/hunt.hpp"
@@ -40,6 +41,7 @@ struct HuntArguments {
   std::optional<std::uint64_t> seed;
   std::optional<double> position_rmse_limit_m;
   bool all = false;
+  FrameCacheArguments frame_cache;
   std::size_t jobs = 0;
   FileLimits files;
   std::string progress;
@@ -110,6 +112,7 @@ Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
   ProgressDisplay display(arguments.quiet, arguments.progress);
   experiments::HuntOptions options;
   options.flights.folder = fs::absolute(arguments.out);
+  options.flights.frame_cache = frame_cache_from(arguments.frame_cache, options.flights.folder);
   options.flights.program = "/proc/self/exe";
   options.flights.flight_options = arguments.files.options();
   options.flights.jobs =
@@ -187,6 +190,7 @@ void add_hunt_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   add_file_limits(*command, arguments->files, "the scenario");
   command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
+  add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = hunt(*arguments); });

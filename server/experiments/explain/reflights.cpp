@@ -8,6 +8,7 @@
 
 #include "core/cancel.hpp"
 #include "server/experiments/flight_files.hpp"
+#include "server/experiments/pictures/picture_key.hpp"
 #include "server/experiments/result_key.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -97,8 +98,16 @@ Result<std::vector<const Reflight*>> Reflights::fly(const Json& document,
 
 Status Reflights::start(const Prepared& prepared) {
   if (options_.progress) options_.progress(flights_.size(), prepared.flight.name);
+  // Most changes leave the pictures as they were. Others that no flight before had are probably not
+  // needed again.
+  const bool unchanged = prepared.flight.changes.empty();
+  const bool is_new = known_pictures_.insert(picture_key(prepared.scenario)).second;
   return FlightFiles(options_.folder)
-      .launch(processes_, prepared.id, prepared.scenario, options_.timeout_s);
+      .launch(processes_,
+              prepared.id,
+              prepared.scenario,
+              options_.timeout_s,
+              frame_cache_options(options_.frame_cache, unchanged || !is_new));
 }
 
 void Reflights::take_results(const Prepared& prepared, const std::string& failure) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <list>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "core/result.hpp"
 #include "server/experiments/explain/explanation.hpp"
 #include "server/experiments/flight_process.hpp"
+#include "server/experiments/pictures/flight_frame_cache.hpp"
 
 namespace overfly::server::experiments {
 
@@ -25,6 +27,7 @@ struct ReflightOptions {
   std::size_t most_flights = 12;
   double timeout_s = 3600.0;  ///< of one flight, on the clock on the wall
   SourcePolicy sources;
+  FlightFrameCache frame_cache;
   const std::atomic<bool>* cancel = nullptr;
   /// Told before and after each flight: how many are done, and what is flown.
   std::function<void(std::size_t done, const std::string& name)> progress;
@@ -72,6 +75,7 @@ class Reflights {
   std::filesystem::path run_folder_;
   FlightProcesses processes_;
   std::list<Reflight> flights_;
+  std::set<std::string> known_pictures_;  ///< picture_key of the flights so far
 };
 
 }  // namespace overfly::server::experiments

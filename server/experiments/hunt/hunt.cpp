@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "core/cancel.hpp"
+#include "server/experiments/pictures/picture_key.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -40,8 +43,10 @@ class Hunter {
   Status fly(const std::vector<Eigen::VectorXd>& points) {
     std::vector<SweepCell> cells;
     for (const Eigen::VectorXd& point : points) cells.push_back(cell_at(hunt_, point));
+    SweepOptions flights = options_.flights;
+    flights.pictures_recur = note_pictures(cells);
     sweep_.chosen_cells->insert(sweep_.chosen_cells->end(), cells.begin(), cells.end());
-    const Result<FlownSweep> flown = fly_cells(sweep_, std::move(cells), options_.flights);
+    const Result<FlownSweep> flown = fly_cells(sweep_, std::move(cells), flights);
     if (!flown) return flown.error();
     result_.cancelled = flown->cancelled;
     if (result_.cancelled) return {};
@@ -53,6 +58,18 @@ class Hunter {
     }
     search_.tell(values);
     return {};
+  }
+
+  /// @return whether cells have the same pictures as earlier ones: limits on the sensor's noise,
+  /// the estimator or other things that do not change them
+  bool note_pictures(const std::vector<SweepCell>& cells) {
+    if (options_.flights.frame_cache.budget_gib <= 0.0) return false;
+    bool recur = false;
+    for (const SweepCell& cell : cells) {
+      const Result<Scenario> scenario = scenario_of(sweep_, cell, 0);
+      if (scenario) recur |= !known_pictures_.insert(picture_key(*scenario)).second;
+    }
+    return recur;
   }
 
   /// @return the lowest margin of the cell's flights
@@ -83,6 +100,7 @@ class Hunter {
   Sweep sweep_;
   PointSearch search_;
   HuntResult result_;
+  std::set<std::string> known_pictures_;  ///< picture_key of the cells so far
 };
 
 }  // namespace
