@@ -288,6 +288,8 @@ Result<std::vector<std::string>> study_arguments(const RunManager& runs,
                 "--progress",
                 folder.progress_file().string(),
                 "--quiet"});
+  // The folder of a hunt stays; rendered pictures in it would take gigabytes.
+  if (record.kind == StudyKind::kHunt) words.insert(words.end(), {"--frame-cache-gib", "0"});
   if (!data.sources.confined()) return words;
   const auto add = [&](const char* option, const std::vector<fs::path>& folders) {
     for (const fs::path& each : folders) {
