@@ -9,6 +9,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
@@ -26,6 +27,7 @@ struct EnvelopeArguments {
   std::string out;
   std::string axis;
   std::string estimator;
+  FrameCacheArguments frame_cache;
   std::size_t jobs = 0;
   bool json = false;
   bool quiet = false;
@@ -40,6 +42,7 @@ int envelope(const EnvelopeArguments& arguments) {
     options.axis = arguments.axis;
     options.estimator = arguments.estimator;
     options.flights.folder = fs::absolute(arguments.out);
+    options.flights.frame_cache = frame_cache_from(arguments.frame_cache, options.flights.folder);
     options.flights.program = "/proc/self/exe";
     options.flights.jobs = arguments.jobs == 0
                                ? std::max(1U, std::thread::hardware_concurrency() / 2)
@@ -82,6 +85,7 @@ void add_envelope_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = envelope(*arguments); });

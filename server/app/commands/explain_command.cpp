@@ -10,6 +10,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/explain/explain_run.hpp"
@@ -31,6 +32,7 @@ struct ExplainArguments {
   std::string estimator;
   std::vector<std::string> causes;
   std::size_t flights = 12;
+  FrameCacheArguments frame_cache;
   std::size_t jobs = 0;
   bool json = false;
   bool quiet = false;
@@ -53,6 +55,7 @@ experiments::ExplainOptions explain_options_from(const ExplainArguments& argumen
     options.causes.push_back(experiments::cause_from(name).value());
   }
   options.flights.folder = folder;
+  options.flights.frame_cache = frame_cache_from(arguments.frame_cache, folder);
   options.flights.program = "/proc/self/exe";
   options.flights.jobs =
       arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
@@ -91,6 +94,11 @@ int explain(const ExplainArguments& arguments) {
     return experiments::explain_run(run, explain_options_from(arguments, folder, display));
   }();
   if (!explanation) return report(explanation.error());
+  if (arguments.frame_cache.folder.empty()) {
+    // Its own one: no further flight has these pictures.
+    std::error_code ignored;
+    fs::remove_all(folder / experiments::kFrameCacheFolder, ignored);
+  }
   const auto document = experiments::json_from(*explanation, folder);
   if (!explanation->succeeded) {
     Status status = server::write_json(folder / "explanation.json", document);
@@ -131,6 +139,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of sentences");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = explain(*arguments); });

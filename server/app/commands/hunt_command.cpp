@@ -12,6 +12,7 @@
 #include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/hunt/hunt.hpp"
@@ -39,6 +40,7 @@ struct HuntArguments {
   std::optional<std::uint64_t> seed;
   std::optional<double> position_rmse_limit_m;
   bool all = false;
+  FrameCacheArguments frame_cache;
   std::size_t jobs = 0;
   bool json = false;
   bool quiet = false;
@@ -94,6 +96,7 @@ Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
   ProgressDisplay display(arguments.quiet);
   experiments::HuntOptions options;
   options.flights.folder = fs::absolute(arguments.out);
+  options.flights.frame_cache = frame_cache_from(arguments.frame_cache, options.flights.folder);
   options.flights.program = "/proc/self/exe";
   options.flights.jobs =
       arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
@@ -178,6 +181,7 @@ void add_hunt_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = hunt(*arguments); });

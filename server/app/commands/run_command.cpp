@@ -4,14 +4,17 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
+#include "server/record/run_folder.hpp"
 #include "server/run/run.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -31,6 +34,9 @@ struct RunArguments {
   std::string renderer;
   std::vector<std::filesystem::path> folders;  ///< whose files may be named; empty = any file may
   std::vector<std::filesystem::path> closed;   ///< in them, but may not be named
+  std::filesystem::path frame_cache;
+  double frame_cache_gib = kFrameCacheGib;
+  std::int64_t frame_cache_since_ns = 0;
   bool json = false;
   bool quiet = false;
 };
@@ -73,6 +79,17 @@ int exit_code_of_estimators(const server::RunMetrics& metrics) {
   return none_ran ? kExitFailure : kExitOk;
 }
 
+std::optional<server::FrameFolderOptions> frame_cache_of(const RunArguments& arguments) {
+  if (arguments.frame_cache.empty()) return std::nullopt;
+  server::FrameFolderOptions options;
+  options.folder = std::filesystem::absolute(arguments.frame_cache);
+  options.budget_bytes =
+      static_cast<std::uint64_t>(arguments.frame_cache_gib * static_cast<double>(1ULL << 30U));
+  options.keep_since_ns =
+      arguments.frame_cache_since_ns != 0 ? arguments.frame_cache_since_ns : server::utc_now_ns();
+  return options;
+}
+
 int run(const RunArguments& arguments) {
   const Result<server::Scenario> scenario = load_to_fly(arguments);
   if (!scenario) return report(scenario.error());
@@ -82,6 +99,8 @@ int run(const RunArguments& arguments) {
     server::RunOptions options;
     options.folder = arguments.out;
     options.cancel = &catch_stop_signals();
+    options.frame_cache = frame_cache_of(arguments);
+    options.warn = [&](const std::string& text) { display.warn("warning: " + text); };
     options.notice = [&](const std::string& text) { display.note(text); };
     options.progress = [&](const server::RunInfo& info) { show_progress(display, info); };
     result = server::run_scenario(*scenario, options);
@@ -124,6 +143,19 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "Folder in those whose files may not be named; repeatable")
       ->allow_extra_args(false)
       ->needs(folders);
+  command->add_option("--frame-cache",
+                      arguments->frame_cache,
+                      "Folder of rendered pictures of other flights, which gets those of this one");
+  CLI::Option* gib = command
+                         ->add_option("--frame-cache-gib",
+                                      arguments->frame_cache_gib,
+                                      "Size of that folder at most [GiB]; 0: it is only read")
+                         ->check(CLI::Range(0.0, kMostFrameCacheGib))
+                         ->capture_default_str();
+  // For series of flights, whose processes must not remove each other's pictures.
+  command->add_option("--frame-cache-since-ns", arguments->frame_cache_since_ns)
+      ->needs(gib)
+      ->group("");
   command->add_flag("--json", arguments->json, "Print metrics.json instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -14,6 +14,7 @@
 #include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
@@ -42,6 +43,7 @@ struct SweepArguments {
   std::vector<std::string> slurm_options;
   double lease_s = 180.0;
   std::string alignment = "init_scale";
+  FrameCacheArguments frame_cache;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;
@@ -105,6 +107,7 @@ Result<experiments::FlownSweep> fly(const experiments::Sweep& sweep,
   options.folder = fs::absolute(arguments.out);
   options.program = "/proc/self/exe";
   options.jobs = arguments.jobs == 0 ? default_jobs() : arguments.jobs;
+  options.frame_cache = frame_cache_from(arguments.frame_cache, options.folder);
   options.cancel = &catch_stop_signals();
   options.progress = [&](const experiments::SweepProgress& progress) {
     show_sweep(display, progress);
@@ -117,7 +120,9 @@ Result<experiments::FlownSweep> fly(const experiments::Sweep& sweep,
   if (arguments.executor == "folder") {
     display.note("workers fly it: overfly sweep work " + arguments.out);
   }
-  return experiments::fly_sweep(sweep, options);
+  Result<experiments::FlownSweep> flown = experiments::fly_sweep(sweep, options);
+  if (flown && flown->pictures.read > 0) display.note(pictures_text(flown->pictures));
+  return flown;
 }
 
 void print_sweep_plan(const experiments::FlownSweep& flown) {
@@ -178,6 +183,11 @@ std::string misuse(const CLI::App& command, const SweepArguments& arguments) {
   }
   if (executor != "slurm" && command.count("--slurm-option") > 0) {
     return "--slurm-option: needs --executor slurm";
+  }
+  for (const char* option : {"--frame-cache", "--frame-cache-gib"}) {
+    if (executor != "local" && command.count(option) > 0) {
+      return std::string(option) + ": needs --executor local";
+    }
   }
   if (executor == "local" && command.count("--lease-s") > 0) {
     return "--lease-s: needs --executor folder or slurm";
@@ -265,6 +275,7 @@ void add_sweep_command(CLI::App& app, int& exit_code) {
   command->add_option("--alignment", arguments->alignment, "Alignment of the errors in the table")
       ->check(CLI::IsMember(alignment_mode_names()))
       ->capture_default_str();
+  add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--dry-run", arguments->dry_run, "Check everything and count the flights");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
