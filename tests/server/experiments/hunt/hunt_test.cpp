@@ -64,6 +64,7 @@ class FlyHunt : public ::testing::Test {
     options.flights.folder = folder();
     options.flights.program = program();
     options.flights.jobs = jobs;
+    options.flights.frame_cache = frame_cache_;
     options.flights.cancel = &cancel_;
     options.progress = [this](const HuntResult& result) {
       told_ = result.flights.size();
@@ -80,6 +81,7 @@ class FlyHunt : public ::testing::Test {
   [[nodiscard]] fs::path program() const { return own_.path() / "program"; }
   [[nodiscard]] fs::path calls() const { return own_.path() / "calls"; }
 
+  FlightFrameCache frame_cache_;
   std::string before_;
   std::atomic<bool> cancel_{false};
   std::size_t cancel_after_ = 1000;
@@ -124,6 +126,34 @@ TEST_F(FlyHunt, FliesTheWholeBudgetIfAsked) {
   EXPECT_EQ(result->flights.size(), 7U);
   EXPECT_EQ(calls_made(), 7U);
   EXPECT_TRUE(result->worst()->margin.failed);
+}
+
+/// Points that differ in the noise only share pictures, which the first one cannot know.
+TEST_F(FlyHunt, KeepsPicturesWherePointsShareThem) {
+  frame_cache_ = {folder() / "frames", 2.0, 1};
+  before_ = "echo \"$*\" >> '" + (folder() / "words").string() + "'";
+  const auto lines_with_cache = [&](const Json& fields) {
+    fs::remove_all(folder());
+    Json limits = fields;
+    limits.update({{"until", "flights"}, {"most_flights", 3}});
+    const auto result = fly(hunt(limits), 100.0);
+    EXPECT_TRUE(result.ok()) << result.error().message;
+    const std::string words = read_text(folder() / "words");
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = words.find("--frame-cache-gib 2", at)) != words.npos; ++at) {
+      ++lines;
+    }
+    return lines;
+  };
+  EXPECT_EQ(lines_with_cache(Json::object()), 0U);
+  EXPECT_EQ(lines_with_cache({{"set", {{"camera.sensor", Json::object()}}},
+                              {"axes",
+                               {{{"path", "camera.sensor.read_noise_e"},
+                                 {"label", "Noise"},
+                                 {"unit", "e"},
+                                 {"from", 0},
+                                 {"to", 30}}}}}),
+            2U);
 }
 
 TEST_F(FlyHunt, SaysWhenNothingFails) {
