@@ -10,10 +10,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
-<<<<<<< HEAD
 #include "server/app/file_limits.hpp"
-=======
->>>>>>> cache
 #include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
@@ -147,11 +144,8 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-<<<<<<< HEAD
   add_file_limits(*command, arguments->files, "the run's scenario");
   command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
-=======
->>>>>>> cache
   add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of sentences");
   command->add_flag("--quiet", arguments->quiet, "No progress");

@@ -12,10 +12,7 @@
 #include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
-<<<<<<< HEAD
 #include "server/app/file_limits.hpp"
-=======
->>>>>>> cache
 #include "server/app/frame_cache_options.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
@@ -98,28 +95,6 @@ std::string progress_text(const experiments::Hunt& hunt, const experiments::Hunt
          (worst == nullptr ? "" : "; the worst one " + experiments::result_text(*worst));
 }
 
-<<<<<<< HEAD
-=======
-Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
-                                         const HuntArguments& arguments) {
-  ProgressDisplay display(arguments.quiet);
-  experiments::HuntOptions options;
-  options.flights.folder = fs::absolute(arguments.out);
-  options.flights.frame_cache = frame_cache_from(arguments.frame_cache, options.flights.folder);
-  options.flights.program = "/proc/self/exe";
-  options.flights.jobs =
-      arguments.jobs == 0 ? std::max(1U, std::thread::hardware_concurrency() / 2) : arguments.jobs;
-  options.flights.cancel = &catch_stop_signals();
-  options.flights.warn = [&](const std::string& text) { display.warn("warning: " + text); };
-  options.progress = [&](const experiments::HuntResult& result) {
-    display.show(
-        static_cast<double>(result.flights.size()) / static_cast<double>(hunt.most_flights),
-        progress_text(hunt, result));
-  };
-  return experiments::fly_hunt(hunt, options);
-}
-
->>>>>>> cache
 /// hunt.json, and worst.json if a flight was flown.
 Status write_results(const experiments::Hunt& hunt,
                      const experiments::HuntResult& result,
@@ -213,11 +188,8 @@ void add_hunt_command(CLI::App& app, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Flights at the same time; 0: half the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-<<<<<<< HEAD
   add_file_limits(*command, arguments->files, "the scenario");
   command->add_option("--progress", arguments->progress, "File for the progress, as JSON");
-=======
->>>>>>> cache
   add_frame_cache_options(*command, arguments->frame_cache);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->add_flag("--quiet", arguments->quiet, "No progress");
