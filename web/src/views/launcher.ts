@@ -60,12 +60,17 @@ export class Launcher implements View {
       this.description,
       this.fieldArea,
       this.errors,
-      h('div', { class: 'launch-buttons' }, this.button, this.editor),
       h(
         'div',
         { class: 'launch-buttons' },
-        this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
-        this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
+        this.button,
+        this.editor,
+        h(
+          'div',
+          { class: 'launch-studies' },
+          this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
+          this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
+        ),
       ),
     );
     this.editor.addEventListener('click', () => void context.catalogue.openEditor());
