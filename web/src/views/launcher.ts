@@ -60,18 +60,7 @@ export class Launcher implements View {
       this.description,
       this.fieldArea,
       this.errors,
-      h(
-        'div',
-        { class: 'launch-buttons' },
-        this.button,
-        this.editor,
-        h(
-          'div',
-          { class: 'launch-studies' },
-          this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
-          this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
-        ),
-      ),
+      h('div', { class: 'launch-buttons' }, this.button, this.editor, this.studyButtons()),
     );
     this.editor.addEventListener('click', () => void context.catalogue.openEditor());
     panel.body.append(form);
@@ -103,6 +92,15 @@ export class Launcher implements View {
 
   private texts(): Map<string, string> {
     return new Map(this.fields.map(({ spec, read }) => [spec.path, read()]));
+  }
+
+  private studyButtons(): HTMLElement {
+    return h(
+      'div',
+      { class: 'launch-studies' },
+      this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
+      this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
+    );
   }
 
   /** Prepares a study of the scenario with the form's values. */

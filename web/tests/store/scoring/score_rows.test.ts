@@ -79,7 +79,9 @@ describe('offsetTexts', () => {
 describe('exportScores', () => {
   it('writes every digit as CSV', () => {
     const lines = exportScores(evaluation, 'CSV').split('\n');
-    expect(lines[1]).toBe('file:d/t.tum,file:d/e.tum,sim3,0.1234567890123,0.1,,,,2,,,,,,,,,,,,,,,,');
+    expect(lines[1]).toBe(
+      'file:d/t.tum,file:d/e.tum,sim3,0.1234567890123,0.1,,,,2,,,,,,,,,,,,,,,,',
+    );
   });
 
   it('writes what is shown as Markdown and LaTeX', () => {
