@@ -78,14 +78,14 @@ TEST_F(CommandLine, PredictCanBeCancelled) {
                              "--cell-m",
                              "10",
                              "--out",
-                             path("cancelled")},
+                             path("cancelled_prediction")},
                             path(""));
   for (int i = 0; i < 200 && predicting.err().find("the flight") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   predicting.signal(SIGINT);
   EXPECT_EQ(predicting.wait(), 3);
-  EXPECT_FALSE(fs::exists(path("cancelled")));
+  EXPECT_FALSE(fs::exists(path("cancelled_prediction")));
 }
 
 }  // namespace
