@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Flies the short flights that the risk model of `overfly predict` is fitted to and judged by.
 
-Usage: predict_flights.py BINARY RESULTS_FOLDER [--data FOLDER] [--flights N] [--jobs N]
+Usage: predict_flights.py BINARY RESULTS_FOLDER [--data FOLDER] [--fitting N] [--judging N]
+           [--jobs N]
 
-Flies N flights over each set of worlds (predict_worlds.py), of 10 s with the native estimator in
-lockstep. Height, speed, turns, camera, exposure, noise, focus and light are drawn at random from
+Flies --fitting and --judging flights over the two sets of worlds (predict_worlds.py), of 10 s with the
+native estimator in lockstep. Height, speed, turns, camera, exposure, noise, focus and light are drawn at random from
 the same ranges for both sets; the number of a flight determines them. RESULTS_FOLDER/flights gets a
 scenario and a result for each; flights that have a result are skipped. The flights of the two sets
-alternate, so that a run that is stopped leaves both equally long.
+alternate.
 """
 
 import argparse
@@ -32,7 +33,8 @@ def arguments():
     parser.add_argument("binary", type=pathlib.Path)
     parser.add_argument("results", type=pathlib.Path)
     parser.add_argument("--data", type=pathlib.Path, default=ROOT / "../shared/data")
-    parser.add_argument("--flights", type=int, default=150)
+    parser.add_argument("--fitting", type=int, default=168)
+    parser.add_argument("--judging", type=int, default=84)
     parser.add_argument("--jobs", type=int, default=2)
     return parser.parse_args()
 
@@ -115,8 +117,11 @@ def main():
     (args.results / "flights").mkdir(parents=True, exist_ok=True)
     maker = WorldMaker(args.binary, args.results / "worlds", args.data)
     tasks = []
-    for number in range(args.flights):
-        for set_name, worlds in (("fit", FITTING), ("judge", JUDGING)):
+    for number in range(max(args.fitting, args.judging)):
+        for set_name, worlds, count in (("fit", FITTING, args.fitting),
+                                        ("judge", JUDGING, args.judging)):
+            if number >= count:
+                continue
             name = list(worlds)[number % len(worlds)]
             tasks.append((maker.world(name), set_name, name, number))
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
