@@ -1,20 +1,37 @@
 #!/usr/bin/env python3
 """Prints the totals of the GoogleTest programs, and which tests were skipped and why.
 
-Usage: results.py RESULTS_FOLDER     the folder with the XML file of each suite
+Usage: results.py BUILD_FOLDER
+
+Reads the XML file that each suite leaves in BUILD_FOLDER/test-results, and the lists of suites that ctest
+makes (cmake/AddTestSuites.cmake). The exit code is 1 if a suite of a list left no results, because it
+crashed, ran out of time or was not run.
 """
 
 import collections
 import pathlib
+import re
 import sys
 import xml.etree.ElementTree
 
+LIST_ENDING = "_tests_suites.txt"
+
+
+def expected(build):
+    """The names of all suites."""
+    for file in build.rglob("*" + LIST_ENDING):
+        room = file.name.removesuffix(LIST_ENDING)
+        for line in file.read_text().splitlines():
+            if suite := re.fullmatch(r"([^ #]+)\.( +#.*)?", line):
+                yield f"{room}.{suite[1].replace('/', '.')}"
+
 
 def main():
+    build = pathlib.Path(sys.argv[1])
     counts = collections.Counter()
     skipped = []
-    for file in sorted(pathlib.Path(sys.argv[1]).glob("*.xml")):
-        counts["suites"] += 1
+    files = sorted((build / "test-results").glob("*.xml"))
+    for file in files:
         for case in xml.etree.ElementTree.parse(file).getroot().iter("testcase"):
             if case.get("status") == "notrun":
                 continue
@@ -29,10 +46,14 @@ def main():
                 skipped.append(f"skipped: {name}: {reason}")
     for line in skipped:
         print(line)
+    missing = sorted(set(expected(build)) - {file.stem for file in files})
+    for name in missing:
+        print(f"failed: {name}: the suite left no results")
     passed = counts["tests"] - counts["failed"] - len(skipped)
-    print(f'C++ tests: {counts["tests"]} in {counts["suites"]} suites: {passed} passed, '
-          f'{len(skipped)} skipped, {counts["failed"]} failed')
+    print(f'C++ tests: {counts["tests"]} in {len(files)} suites: {passed} passed, '
+          f'{len(skipped)} skipped, {counts["failed"]} failed, {len(missing)} suites without results')
+    return 1 if missing else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

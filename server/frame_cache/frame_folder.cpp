@@ -176,7 +176,9 @@ fs::path FrameFolder::file_of(const std::string& key) const {
 Result<std::optional<std::vector<std::uint8_t>>> FrameFolder::read(const std::string& key,
                                                                    std::size_t max_bytes) const {
   const fs::path file = file_of(key);
-  const FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  // Without waiting, should it be a pipe.
+  const FileDescriptor descriptor(
+      ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!descriptor.open() && (errno == ENOENT || errno == ENOTDIR)) {
     return std::optional<std::vector<std::uint8_t>>();
   }

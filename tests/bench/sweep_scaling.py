@@ -25,7 +25,10 @@ def durations_s(folder: pathlib.Path) -> list[float]:
     """Of the flights of a sweep, in the order of their results; estimators share a flight."""
     flights = {}
     for line in (folder / "results.jsonl").read_text().splitlines():
-        result = json.loads(line)
+        try:
+            result = json.loads(line)
+        except json.JSONDecodeError:
+            continue  # The last line of a sweep that flies or was killed.
         if result["status"] == "completed":
             flights[result["run"]] = result["duration_s"]
     return list(flights.values())
@@ -52,16 +55,18 @@ def main() -> None:
     parser.add_argument("--interval-s", type=float, default=5.0)
     options = parser.parse_args()
     recorded = [duration for folder in options.folders for duration in durations_s(folder)]
+    if not recorded:
+        raise SystemExit("no completed flight in " + ", ".join(map(str, options.folders)))
     chance = random.Random(1)
     # All cells once, then all twice, as a sweep does.
     flights = recorded + [chance.choice(recorded) for _ in range((options.repeats - 1) * len(recorded))]
-    alone = sum(flights)
+    one_node_s = sum(flights)
     print(f"{len(flights)} flights from {len(recorded)} recorded ones of {min(recorded):.0f} to "
-          f"{max(recorded):.0f} s; {alone / 3600:.1f} h of flying")
+          f"{max(recorded):.0f} s; {one_node_s / 3600:.1f} h of flying")
     print("| nodes | time [min] | efficiency |\n|---|---|---|")
     for nodes in NODES:
         end = makespan_s(flights, nodes, options, chance)
-        print(f"| {nodes} | {end / 60:.1f} | {100 * alone / (nodes * end):.0f} % |")
+        print(f"| {nodes} | {end / 60:.1f} | {100 * one_node_s / (nodes * end):.0f} % |")
 
 
 if __name__ == "__main__":

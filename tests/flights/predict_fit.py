@@ -8,7 +8,8 @@ RESULTS_FOLDER/features/NAME.json; --keep uses those that exist). The windows of
 their outcomes are written to --table (tests/server/experiments/predict/flights.csv); the model is
 fitted to the flights of the set "fit" only, which also choose the strength of its penalty, and
 written to --coefficients (server/experiments/predict/risk_coefficients.cpp). Printed are the flights
-by outcome and the area under the ROC curve of both sets.
+by outcome and by predicted risk, the area under the ROC curve of both sets, and that of models fitted
+to halves of the first set.
 
 The model is that of server/experiments/predict/risk_model.hpp: the hazard of each second is a
 logistic function of the inputs. It is fitted by maximum likelihood with a ridge penalty, where
@@ -19,9 +20,11 @@ up to the loss; of one that never initialised it is not known in which second it
 import argparse
 import concurrent.futures
 import csv
+import itertools
 import json
 import math
 import pathlib
+import random
 import subprocess
 import sys
 
@@ -37,6 +40,7 @@ KINDS = [-1, -1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1]
 # are judged best is used.
 RIDGES = [3.0, 10.0, 30.0, 100.0, 300.0]
 STEPS = 12  # of the iteration
+RISK_BOUNDS_PERCENT = [0, 25, 50, 75, 90, 101]
 
 
 def arguments():
@@ -268,6 +272,10 @@ def report(model, flights):
         count = sum(lost(flight) for flight in some)
         print(f"| {name} | {len(some)} | {count} | {len(some) - count} | "
               f"{roc_area(model, some):.3f} |")
+    print("\nFlights of the other worlds that were lost, by predicted risk: " + ", ".join(
+        f"{low:g} to {min(high, 100):g} %: {sum(map(lost, some))} of {len(some)}"
+        for low, high in itertools.pairwise(RISK_BOUNDS_PERCENT)
+        if (some := [f for f in judged if low <= 100 * flight_risk(model, f) < high])))
     print("\n| world | lost | completed |\n|---|---|---|")
     for world in [*FITTING, *JUDGING]:
         some = [flight for flight in flights if flight["world"] == world]
@@ -275,6 +283,15 @@ def report(model, flights):
     print("\n| input | mean | scale | log odds per scale |\n|---|---|---|---|")
     for row in zip(INPUTS, *model[1:]):
         print("| {} | {:.3f} | {:.3f} | {:+.3f} |".format(*row))
+
+
+def report_subsets(fit, judged, ridge):
+    """How much the area over the other worlds depends on which flights the model is fitted to."""
+    chance = random.Random(1)
+    halves = [chance.sample(fit, len(fit) // 2) for _ in range(6)]
+    areas = [roc_area(fitted(half, ridge), judged) for half in [fit[:len(fit) // 2], *halves]]
+    print(f"\nArea over the other worlds if fitted to the first half of the flights: {areas[0]:.3f}; "
+          "to random halves: " + ", ".join(f"{area:.3f}" for area in areas[1:]))
 
 
 def main():
@@ -285,9 +302,11 @@ def main():
     areas = {ridge: left_out_area(fit, ridge) for ridge in RIDGES}
     print("Area over worlds left out of the fitting set, by the penalty: " +
           ", ".join(f"{ridge:g}: {area:.3f}" for ridge, area in areas.items()) + "\n")
-    model = fitted(fit, max(areas, key=areas.get))
+    ridge = max(areas, key=areas.get)
+    model = fitted(fit, ridge)
     write_coefficients(model, flights, args.coefficients)
     report(model, flights)
+    report_subsets(fit, [flight for flight in flights if flight["set"] == "judge"], ridge)
 
 
 if __name__ == "__main__":

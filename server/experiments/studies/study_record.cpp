@@ -18,6 +18,8 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxRecordBytes = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kMaxOutputBytes = std::uint64_t{64} << 20U;
 constexpr std::size_t kLongestProblem = 1000;
+/// Limit of --jobs.
+constexpr std::size_t kMostJobs = 256;
 
 constexpr std::array<const char*, 3> kKinds = {"explain", "predict", "hunt"};
 constexpr std::array<const char*, 6> kStates = {
@@ -94,7 +96,7 @@ Result<StudyRecord> StudyFolder::read() const {
   for (const Json& option : *options) {
     if (option.is_string()) record.options.push_back(option.get<std::string>());
   }
-  record.jobs = std::max<std::size_t>(1, number_field(*document, "jobs"));
+  record.jobs = std::clamp<std::size_t>(number_field(*document, "jobs"), 1, kMostJobs);
   record.memory.images_bytes = number_field(*document, "images_bytes");
   record.memory.caches_bytes = number_field(*document, "caches_bytes");
   record.created_utc = text_field(*document, "created_utc");

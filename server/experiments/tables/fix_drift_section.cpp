@@ -31,16 +31,14 @@ DocumentSection fix_drift_section(const SweepTables& tables, std::size_t convent
       "Position error when the next fix comes, with a fix of position and orientation every 1, 2 "
       "and 5 km of the path: median of each flight, then median and quartiles over the flights, "
       "and after the slash the worst of all. -: no flight is long enough."};
-  add_axes(tables.scores, section.table.columns);
-  section.table.columns.push_back({"estimator", false});
+  add_estimator_columns(tables.scores, section.table.columns);
   for (const double interval_m : kFixIntervalsM) {
     section.table.columns.push_back({number_text(interval_m / 1000.0) + " km [m]", true});
   }
   for (const CellScores& row : tables.rows) {
     const CellErrors& errors = row.errors[convention];
     if (!has_drift(errors)) continue;
-    std::vector<TableCell> line = axis_cells(tables.scores, row.cell);
-    line.push_back({row.estimator, false});
+    std::vector<TableCell> line = estimator_cells(tables.scores, row);
     for (const CellFixDrift& drift : errors.fix_drift) line.push_back({drift_text(drift), false});
     section.table.rows.push_back(std::move(line));
   }

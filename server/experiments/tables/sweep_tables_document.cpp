@@ -199,16 +199,14 @@ DocumentSection honesty_section(const SweepTables& tables, std::size_t conventio
       "Flights whose mean normalised estimation error squared is above (overconfident) or below "
       "(too cautious) its band of 95 %, and by which factor position errors exceed the stated "
       "standard deviations: median and quartiles over the flights."};
-  add_axes(tables.scores, section.table.columns);
-  section.table.columns.push_back({"estimator", false});
+  add_estimator_columns(tables.scores, section.table.columns);
   for (const char* head : {"flights", "overconfident", "too cautious", "errors / stated"}) {
     section.table.columns.push_back({head, true});
   }
   for (const CellScores& row : tables.rows) {
     if (!states_covariances(row, convention)) continue;
     const CellHonesty& honesty = row.errors[convention].honesty;
-    std::vector<TableCell> line = axis_cells(tables.scores, row.cell);
-    line.push_back({row.estimator, false});
+    std::vector<TableCell> line = estimator_cells(tables.scores, row);
     for (const std::size_t count : {honesty.flights, honesty.overconfident, honesty.too_cautious}) {
       line.push_back({std::to_string(count), false});
     }

@@ -21,6 +21,17 @@ std::vector<TableCell> axis_cells(const SweepScores& scores, const nlohmann::jso
   return cells;
 }
 
+void add_estimator_columns(const SweepScores& scores, std::vector<TableColumn>& columns) {
+  add_axes(scores, columns);
+  columns.push_back({"estimator", false});
+}
+
+std::vector<TableCell> estimator_cells(const SweepScores& scores, const CellScores& row) {
+  std::vector<TableCell> cells = axis_cells(scores, row.cell);
+  cells.push_back({row.estimator, false});
+  return cells;
+}
+
 std::string quartiles_text(const std::optional<Spread>& spread,
                            const std::optional<Spread>& position) {
   if (!spread) return position ? "-" : "X";

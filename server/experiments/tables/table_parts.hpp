@@ -16,6 +16,13 @@ void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns);
 [[nodiscard]] std::vector<TableCell> axis_cells(const SweepScores& scores,
                                                 const nlohmann::json& cell);
 
+/// Adds the columns of the axes and of the estimator.
+void add_estimator_columns(const SweepScores& scores, std::vector<TableColumn>& columns);
+
+/// The axes' values of a row, and its estimator.
+[[nodiscard]] std::vector<TableCell> estimator_cells(const SweepScores& scores,
+                                                     const CellScores& row);
+
 /// "1.23 [1.1, 1.4]"; X if no flight counts, - if those that count have no such value.
 /// @param position  of the same flights
 [[nodiscard]] std::string quartiles_text(const std::optional<Spread>& spread,

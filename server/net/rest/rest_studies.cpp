@@ -62,46 +62,52 @@ HttpResponse page_response(const std::string& text) {
   return response;
 }
 
-void add_study_actions(RestRouter* router, const StudyRoutes& routes) {
-  StudyService* const studies = routes.studies;
-  router->add("POST",
-              "/api/v1/studies/{name}/continue",
-              [routes, studies](const RouteCall& call, const Respond& respond) {
-                respond_from_reader(
-                    routes.readers,
-                    "a study",
-                    call,
-                    respond,
-                    [studies, name = call.path.at("name")](Cancel) {
-                      StudyRefusal refusal = StudyRefusal::kNone;
-                      const Status status = studies->go_on(name, refusal);
-                      return Result<HttpResponse>(status ? study_response(*studies, name, 202)
-                                                         : study_refused(refusal, status.error()));
-                    });
-              });
-  router->add(
-      "POST",
-      "/api/v1/studies/{name}/cancel",
-      [studies](const RouteCall& call, const Respond& respond) {
-        const std::string& name = call.path.at("name");
-        const Status status = studies->cancel(name);
-        respond(status ? study_response(*studies, name, 202) : error_response(status.error()));
-      });
-  router->add("DELETE",
-              "/api/v1/studies/{name}",
-              [routes, studies](const RouteCall& call, const Respond& respond) {
-                respond_from_reader(
-                    routes.readers,
-                    "a study",
-                    call,
-                    respond,
-                    [studies, name = call.path.at("name")](Cancel) {
-                      const Status status = studies->remove(name);
-                      HttpResponse gone;
-                      gone.status = 204;
-                      return Result<HttpResponse>(status ? gone : error_response(status.error()));
-                    });
-              });
+/// A handler that works with the study of the path on a reading thread.
+/// @param work  (StudyService&, name) -> Result<HttpResponse>
+template <typename Work>
+auto on_study(const StudyRoutes& routes, Work work) {
+  return [routes, work](const RouteCall& call, const Respond& respond) {
+    respond_from_reader(routes.readers,
+                        "a study",
+                        call,
+                        respond,
+                        [studies = routes.studies, name = call.path.at("name"), work](Cancel) {
+                          return Result<HttpResponse>(work(*studies, name));
+                        });
+  };
+}
+
+HttpResponse continue_study(StudyService& studies, const std::string& name) {
+  StudyRefusal refusal = StudyRefusal::kNone;
+  const Status status = studies.go_on(name, refusal);
+  return status ? study_response(studies, name, 202) : study_refused(refusal, status.error());
+}
+
+HttpResponse delete_study(StudyService& studies, const std::string& name) {
+  if (const Status status = studies.remove(name); !status) return error_response(status.error());
+  HttpResponse gone;
+  gone.status = 204;
+  return gone;
+}
+
+Result<HttpResponse> study_with_result(StudyService& studies, const std::string& name) {
+  Result<json> entry = studies.entry(name);
+  if (!entry) return entry.error();
+  Result<json> result = studies.result(name);
+  if (!result) return result.error();
+  return json_response(200, {{"study", std::move(*entry)}, {"result", std::move(*result)}});
+}
+
+Result<HttpResponse> study_page(StudyService& studies, const std::string& name) {
+  const Result<std::string> page = studies.page(name);
+  if (!page) return page.error();
+  return page_response(*page);
+}
+
+Result<HttpResponse> study_worst(StudyService& studies, const std::string& name) {
+  const Result<json> worst = studies.worst(name);
+  if (!worst) return worst.error();
+  return json_response(200, *worst);
 }
 
 }  // namespace
@@ -129,48 +135,19 @@ void add_study_routes(RestRouter* router, const StudyRoutes& routes) {
                               return Result<HttpResponse>(start_study(*studies, request, cancel));
                             });
       });
-  router->add("GET",
-              "/api/v1/studies/{name}",
-              [routes, studies](const RouteCall& call, const Respond& respond) {
-                read_and_answer(
-                    routes.readers,
-                    "a study",
-                    call,
-                    respond,
-                    [studies, name = call.path.at("name")](Cancel) -> Result<json> {
-                      Result<json> entry = studies->entry(name);
-                      if (!entry) return entry.error();
-                      Result<json> result = studies->result(name);
-                      if (!result) return result.error();
-                      return json{{"study", std::move(*entry)}, {"result", std::move(*result)}};
-                    });
-              });
-  router->add("GET",
-              "/api/v1/studies/{name}/page",
-              [routes, studies](const RouteCall& call, const Respond& respond) {
-                respond_from_reader(
-                    routes.readers,
-                    "a study's page",
-                    call,
-                    respond,
-                    [studies, name = call.path.at("name")](Cancel) -> Result<HttpResponse> {
-                      const Result<std::string> page = studies->page(name);
-                      if (!page) return page.error();
-                      return page_response(*page);
-                    });
-              });
-  router->add("GET",
-              "/api/v1/studies/{name}/worst",
-              [routes, studies](const RouteCall& call, const Respond& respond) {
-                read_and_answer(routes.readers,
-                                "a hunt's worst flight",
-                                call,
-                                respond,
-                                [studies, name = call.path.at("name")](Cancel) {
-                                  return studies->worst(name);
-                                });
-              });
-  add_study_actions(router, routes);
+  router->add("GET", "/api/v1/studies/{name}", on_study(routes, study_with_result));
+  router->add("GET", "/api/v1/studies/{name}/page", on_study(routes, study_page));
+  router->add("GET", "/api/v1/studies/{name}/worst", on_study(routes, study_worst));
+  router->add("POST", "/api/v1/studies/{name}/continue", on_study(routes, continue_study));
+  router->add("DELETE", "/api/v1/studies/{name}", on_study(routes, delete_study));
+  router->add(
+      "POST",
+      "/api/v1/studies/{name}/cancel",
+      [studies](const RouteCall& call, const Respond& respond) {
+        const std::string& name = call.path.at("name");
+        const Status status = studies->cancel(name);
+        respond(status ? study_response(*studies, name, 202) : error_response(status.error()));
+      });
 }
 
 }  // namespace overfly::net

@@ -213,8 +213,11 @@ std::size_t PictureStreams::expected_bytes(const Stream& stream) {
 std::vector<PictureStreams::Stream*> PictureStreams::in_turn() {
   std::vector<Stream*> streams;
   for (Stream& stream : streams_) streams.push_back(&stream);
-  std::stable_sort(streams.begin(), streams.end(), [](const Stream* a, const Stream* b) {
-    return a->requested_ns < b->requested_ns;
+  const auto place = [](const Stream* stream) {
+    return std::pair(!wants_preview(*stream), stream->requested_ns);
+  };
+  std::stable_sort(streams.begin(), streams.end(), [&](const Stream* a, const Stream* b) {
+    return place(a) < place(b);
   });
   return streams;
 }

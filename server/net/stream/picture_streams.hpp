@@ -117,7 +117,7 @@ class PictureStreams {
                    bool room,
                    ViewerPort* port,
                    std::int64_t now_ns);
-  /// Those that were not requested for the longest time first.
+  /// Previews first, then those that were not requested for the longest time.
   std::vector<Stream*> in_turn();
   /// Reduces a moving picture, and chooses its coding.
   void fit_to_link(Stream* stream, server::PictureRequest* request) const;

@@ -133,7 +133,7 @@ TEST(PictureContext, DependsOnTheWorldsFiles) {
   EXPECT_EQ(context_of(scenario, info), before);
   for (const auto& entry : std::filesystem::directory_iterator(manifest.parent_path())) {
     if (entry.path().extension() != ".tif") continue;
-    // Written again with the same bytes: only its times tell that it may be another file.
+    // Written again with the same bytes: only its times show that it may be another file.
     const std::string bytes = overfly::testing::read_text(entry.path());
     overfly::testing::write_text(entry.path(), bytes);
     EXPECT_NE(context_of(scenario, info), before) << entry.path();

@@ -49,7 +49,11 @@ class PictureStreamsTest : public ::testing::Test {
   }
   /// Draws and sends what was asked for. @return its header
   PictureHeader send(PictureCoding coding = PictureCoding::kJpeg, bool key = true) {
-    const PictureTicket ticket = port_.drawn.back().first;
+    return send(port_.drawn.back().first, coding, key);
+  }
+  PictureHeader send(const PictureTicket& ticket,
+                     PictureCoding coding = PictureCoding::kJpeg,
+                     bool key = true) {
     server::Picture picture;
     picture.frame = frame_;
     picture.t_ns = frame_ * kPeriodNs;
@@ -170,6 +174,26 @@ TEST_F(PictureStreamsTest, PreviewsAgainIfTheNextJumpComesBeforeTheWholeScene) {
   streams_.show_after_jump();
   EXPECT_EQ(show_scene(kQuickNs), width_px / 2);
   EXPECT_EQ(show_scene(kLongNs), width_px);
+}
+
+TEST_F(PictureStreamsTest, DrawsThePreviewBeforeTheOtherPictures) {
+  streams_.subscribe({{StreamRequest{"r", "camera"}, StreamRequest{"r", "scene"}}, false});
+  using Kind = server::PictureRequest::Kind;
+  const auto drawn = [&] {
+    now_ns_ += kPeriodNs;
+    port_.drawn.clear();
+    streams_.pump({{&timeline_, "r", frame_, frame_ * kPeriodNs}}, false, &port_, now_ns_);
+    std::vector<Kind> kinds;
+    drawing_ns_ = kLongNs;
+    for (const auto& [ticket, request] : std::vector(port_.drawn)) {
+      kinds.push_back(request.kind);
+      send(ticket);
+    }
+    return kinds;
+  };
+  EXPECT_EQ(drawn(), (std::vector{Kind::kCamera, Kind::kScene}));
+  streams_.show_after_jump();
+  EXPECT_EQ(drawn(), (std::vector{Kind::kScene, Kind::kCamera}));
 }
 
 TEST_F(PictureStreamsTest, DoesNotPreviewASceneThatIsDrawnQuickly) {

@@ -16,7 +16,7 @@ using ::testing::IsEmpty;
 
 class SweepPictures : public FlySweep {
  protected:
-  /// Flies and tells how each flight uses the cache: "adds", "reads" or "none".
+  /// Flies. @return how each flight uses the cache: "adds", "reads" or "none".
   std::vector<std::string> fly_with_cache(const Sweep& sweep, double budget_gib = 2.0) {
     std::filesystem::remove(words());
     write_program("echo \"$*\" >> '" + words().string() + "'");

@@ -19,7 +19,7 @@ const kNotes = {
   explain:
     'The critical part of the flight is flown again and again, each time with exactly one cause changed.',
   predict:
-    'Nothing is flown: imagery, elevation and mission tell how a camera would see each part of the flight.',
+    'Nothing is flown: imagery, elevation and mission show how a camera would see each part of the flight.',
   hunt: 'Flights within the limits are chosen by how well those before were survived, until one fails.',
 } as const;
 

@@ -13,7 +13,7 @@ import {
 import { explanation, hunted, reflight, studyEntry } from '../../support/studies';
 
 describe('study words', () => {
-  it('tells progress and time left, or the place in the queue', () => {
+  it('states progress and time left, or the place in the queue', () => {
     const progress = { share: 0.25, text: '3 of at most 12 flights', spent_s: 30, left_s: 90 };
     const made = studyEntry('a', 'running', { progress });
     expect(studyDetail(made)).toBe('Explanation · 25 % · 1 min 30 s left');
