@@ -20,8 +20,8 @@ namespace overfly::testing {
 
 /// A server with a run whose estimator "perfect" is LOST, and whose studies are made by a program
 /// in place of overfly. `program KIND INPUT ... --out FOLDER --progress FILE ...` writes its
-/// arguments to `calls` and its process to `made`, reports half of the progress, waits while there is
-/// a file `block`, fails while there is a file `fail`, and then writes results with one flight.
+/// arguments to `calls` and its process to `made`, reports half of the progress, waits while there
+/// is a file `block`, fails while there is a file `fail`, and then writes results with one flight.
 class StudyRoutesTest : public ::testing::Test {
  public:
   static constexpr const char* kRoute = "/api/v1/studies";
