@@ -155,6 +155,13 @@ Status GroundPass::find_textures(const GroundMesh& mesh,
                                  TileTextures& textures,
                                  const GroundLook& look) {
   tiles_.clear();
+  if (look.wait_for_tiles) {
+    std::vector<terrain::TileId> ids;
+    for (const GroundBatch& batch : mesh.batches) {
+      if (batch.textured) ids.push_back(batch.texture);
+    }
+    textures.load(ids, look.format);
+  }
   for (const GroundBatch& batch : mesh.batches) {
     if (!batch.textured) {
       tiles_.push_back({textures.void_texture(look.format), 1.0F, {}});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "renderer/egl/texture_upload.hpp"
 
@@ -45,6 +46,14 @@ TileTextures::Entry& TileTextures::upload(const Key& key, const TilePixels& pixe
   entries_.push_front(std::move(entry));
   by_key_.emplace(key, entries_.begin());
   return entries_.front();
+}
+
+void TileTextures::load(const std::vector<TileId>& ids, PixelFormat format) {
+  std::vector<TileId> missing;
+  std::copy_if(ids.begin(), ids.end(), std::back_inserter(missing), [&](const TileId& id) {
+    return by_key_.count({id, format}) == 0;
+  });
+  if (missing.size() > 1) store_->load(missing, format);
 }
 
 Result<DrawnTile> TileTextures::texture(const TileId& id, PixelFormat format, bool wait) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/result.hpp"
 #include "renderer/egl/gl_objects.hpp"
@@ -30,6 +31,8 @@ class TileTextures {
  public:
   TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
+  /// Reads those that are not in memory, several at once. Errors are reported by texture().
+  void load(const std::vector<terrain::TileId>& ids, PixelFormat format);
   /// The texture of a tile. Valid until end_view().
   /// @param wait  true: reads the tile if needed; false: uses the nearest available coarser tile
   /// Errors: kIo if a tile cannot be read.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <thread>
@@ -97,8 +98,20 @@ void FrameCaster::cast(const Frame& frame, const ShutterPoses& poses, bool depth
   });
 }
 
+void FrameCaster::load_tiles(const Frame& frame) {
+  std::set<TileId> ids;
+  for (const Band& band : bands_) {
+    std::copy_if(
+        band.tiles.begin(), band.tiles.end(), std::inserter(ids, ids.end()), [&](const TileId& id) {
+          return !frame.found.contains(id) && tiles_->coverage(id) != terrain::TileCoverage::kNone;
+        });
+  }
+  texels_.load({ids.begin(), ids.end()}, frame.request.format);
+}
+
 Status FrameCaster::find_tiles(Frame& frame) {
   const PixelFormat format = frame.request.format;
+  if (frame.request.wait_for_tiles) load_tiles(frame);
   band_tiles_.resize(bands_.size());
   for (std::size_t i = 0; i < bands_.size(); ++i) {
     band_tiles_[i].clear();

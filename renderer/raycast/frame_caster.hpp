@@ -38,6 +38,8 @@ class FrameCaster {
   Frame begin(const CameraRequest& request);
   /// Computes the blocks of one instant of the exposure, into bands_.
   void cast(const Frame& frame, const ShutterPoses& poses, bool depth_only);
+  /// Reads the tiles of the bands that are not in memory.
+  void load_tiles(const Frame& frame);
   /// Finds the tiles that the bands need. Errors: kIo.
   Status find_tiles(Frame& frame);
   void paint(const Painter& painter, const Canvas& canvas);

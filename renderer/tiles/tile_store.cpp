@@ -209,6 +209,28 @@ struct TileStore::State {
     return load(key, true, lock);
   }
 
+  void load_all(std::span<const TileId> ids, PixelFormat format) {
+    if (threads.empty()) return;
+    std::unique_lock lock(mutex);
+    for (const TileId& id : ids) ask({id, format});
+    work.notify_all();
+    // The threads begin with the first one, this thread with the last one.
+    for (std::size_t i = ids.size(); i-- > 0;) {
+      const Key key{ids[i], format};
+      if (entries.count(key) != 0 || !loading.insert(key).second) continue;
+      ++counts.read_on_demand;
+      (void)load(key, true, lock);
+    }
+  }
+
+  /// Requests a tile from the threads, unless it is here or on its way. @pre the lock is held
+  void ask(const Key& key) {
+    if (entries.count(key) != 0 || loading.count(key) != 0) return;
+    if (std::find(asked.begin(), asked.end(), key) != asked.end()) return;
+    asked.push_back(key);
+    if (asked.size() > kMaxAsked) asked.pop_front();
+  }
+
   Pixels find(const Key& key) {
     if (threads.empty()) {
       Result<Pixels> read = get(key);
@@ -216,11 +238,7 @@ struct TileStore::State {
     }
     const std::lock_guard lock(mutex);
     if (Pixels pixels = use(key); pixels != nullptr) return pixels;
-    if (loading.count(key) != 0 || std::find(asked.begin(), asked.end(), key) != asked.end()) {
-      return nullptr;
-    }
-    asked.push_back(key);
-    if (asked.size() > kMaxAsked) asked.pop_front();
+    ask(key);
     work.notify_one();
     return nullptr;
   }
@@ -237,12 +255,20 @@ struct TileStore::State {
     if (!ahead.empty()) work.notify_all();
   }
 
+  void read_when_idle(std::span<const TileId> ids, PixelFormat format) {
+    const std::lock_guard lock(mutex);
+    for (const TileId& id : ids) some_time.push_back({id, format});
+    work.notify_all();
+  }
+
+  /// True if the next tile would evict another. @pre the lock is held
+  [[nodiscard]] bool no_room() const {
+    return !order.empty() && held_bytes + entries.at(order.back()).bytes > options.budget_bytes;
+  }
+
   /// True if the tile to be evicted next is still needed. @pre the lock is held
   [[nodiscard]] bool full() const {
-    if (order.empty() || held_bytes + entries.at(order.back()).bytes <= options.budget_bytes) {
-      return false;
-    }
-    return entries.at(order.back()).round + 1 >= round;
+    return no_room() && entries.at(order.back()).round + 1 >= round;
   }
 
   /// The next tile to read, put into `loading`; `urgent` if a frame is drawn without it. @pre the
@@ -259,7 +285,9 @@ struct TileStore::State {
     urgent = take_from(asked);
     if (urgent) return true;
     if (!ahead.empty() && full()) ahead.clear();
-    return take_from(ahead);
+    if (take_from(ahead)) return true;
+    if (no_room()) some_time.clear();
+    return take_from(some_time);
   }
 
   void fetch_ahead() {
@@ -295,8 +323,9 @@ struct TileStore::State {
   Order order;
   std::size_t held_bytes = 0;
   std::set<Key> loading;
-  std::deque<Key> asked;  // requested by find
-  std::deque<Key> ahead;  // requested by prefetch
+  std::deque<Key> asked;      // requested by find
+  std::deque<Key> ahead;      // requested by prefetch
+  std::deque<Key> some_time;  // requested by read_when_idle
   std::uint64_t round = 0;
   bool stopping = false;
   int waiting = 0;  // threads that need a tile that is being read
@@ -314,6 +343,10 @@ Result<std::shared_ptr<const TilePixels>> TileStore::get(const TileId& id, Pixel
   return state_->get({id, format});
 }
 
+void TileStore::load(std::span<const TileId> ids, PixelFormat format) {
+  state_->load_all(ids, format);
+}
+
 std::shared_ptr<const TilePixels> TileStore::find(const TileId& id, PixelFormat format) {
   return state_->find({id, format});
 }
@@ -327,10 +360,15 @@ void TileStore::prefetch(std::span<const TileId> ids, PixelFormat format) {
   if (!state_->threads.empty()) state_->prefetch(ids, format);
 }
 
+void TileStore::read_when_idle(std::span<const TileId> ids, PixelFormat format) {
+  if (!state_->threads.empty()) state_->read_when_idle(ids, format);
+}
+
 void TileStore::wait_until_idle() {
   std::unique_lock lock(state_->mutex);
   state_->loaded.wait(lock, [this] {
-    return state_->loading.empty() && state_->asked.empty() && state_->ahead.empty();
+    return state_->loading.empty() && state_->asked.empty() && state_->ahead.empty() &&
+           state_->some_time.empty();
   });
 }
 

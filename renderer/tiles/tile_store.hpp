@@ -54,6 +54,9 @@ class TileStore {
   /// The tile, read now if it is not in memory. Errors: kIo naming the tile if it cannot be read.
   [[nodiscard]] Result<std::shared_ptr<const TilePixels>> get(const terrain::TileId& id,
                                                               PixelFormat format);
+  /// Reads the tiles that are not in memory, on the store's threads and the caller's at once: to be
+  /// called before `get` is called for each of many. An error is reported by `get`.
+  void load(std::span<const terrain::TileId> ids, PixelFormat format);
   /// The tile if it is in memory; else null, and the tile is requested (without threads: read).
   [[nodiscard]] std::shared_ptr<const TilePixels> find(const terrain::TileId& id,
                                                        PixelFormat format);
@@ -63,6 +66,9 @@ class TileStore {
   /// Requests tiles that will be needed, most urgent first; replaces the previous request. Tiles
   /// used since the last call but one are not evicted to make room for them.
   void prefetch(std::span<const terrain::TileId> ids, PixelFormat format);
+  /// Requests tiles that may be needed some time. They are read when there is nothing else to read,
+  /// and only while no other tile has to be evicted for them.
+  void read_when_idle(std::span<const terrain::TileId> ids, PixelFormat format);
   /// Waits until the threads are idle.
   void wait_until_idle();
 

@@ -87,6 +87,13 @@ Result<renderer::CameraRequest> FrameRemaker::request(std::size_t camera, const 
   return request;
 }
 
+bool FrameRemaker::is_as_rendered(std::size_t camera, const FrameRow& row) const {
+  if (camera >= cameras_.size() || is_real(camera) || scenario_.cameras[camera].sensor.enabled) {
+    return false;
+  }
+  return FaultSchedule(scenario_).at(camera, row.frame, row.t_ns).names.empty();
+}
+
 Result<Image> FrameRemaker::make(std::size_t camera,
                                  const FrameRow& row,
                                  renderer::Renderer& renderer) {

@@ -37,6 +37,9 @@ class FrameRemaker {
   /// How the frame's image was drawn; of a camera with recorded images, a camera at rest at the
   /// row's pose. Errors: as make.
   [[nodiscard]] Result<renderer::CameraRequest> request(std::size_t camera, const FrameRow& row);
+  /// Whether the frame's image is what the renderer drew: of no real camera, without sensor model
+  /// and faults.
+  [[nodiscard]] bool is_as_rendered(std::size_t camera, const FrameRow& row) const;
   /// The frame as an ideal camera would have taken it (CameraUnit::ideal), at any pose.
   [[nodiscard]] Result<Image> make_ideal(std::size_t camera,
                                          const FrameRow& row,

@@ -6,10 +6,8 @@ Result<std::unique_ptr<renderer::Renderer>> make_renderer(
     const Scenario& scenario,
     const std::shared_ptr<const terrain::TileSource>& tiles,
     const RendererFactory& factory,
-    std::size_t tile_cache_bytes) {
+    renderer::RendererOptions options) {
   if (factory) return factory(tiles);
-  renderer::RendererOptions options;
-  options.tile_cache_bytes = tile_cache_bytes;
   options.device = scenario.renderer.device;
   options.threads = scenario.renderer.threads;
   const std::string& camera = scenario.renderer.camera;

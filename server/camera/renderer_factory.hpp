@@ -15,12 +15,12 @@ using RendererFactory = std::function<Result<std::unique_ptr<renderer::Renderer>
     std::shared_ptr<const terrain::TileSource>)>;
 
 /// The factory's renderer, or the one that the scenario asks for if the factory is empty.
-/// @param tile_cache_bytes  as of RendererOptions; not for the factory's renderer
+/// @param options  without what the scenario tells; not for the factory's renderer
 /// Errors: as the factory's; kUnsupported if the scenario's renderer does not work on this machine.
 [[nodiscard]] Result<std::unique_ptr<renderer::Renderer>> make_renderer(
     const Scenario& scenario,
     const std::shared_ptr<const terrain::TileSource>& tiles,
     const RendererFactory& factory,
-    std::size_t tile_cache_bytes = renderer::RendererOptions().tile_cache_bytes);
+    renderer::RendererOptions options = {});
 
 }  // namespace overfly::server

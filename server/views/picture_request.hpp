@@ -85,6 +85,8 @@ struct PictureRequest {
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
   int max_width_px = 1280;               ///< all but scenes are halved until they fit
+  /// kCamera: an image that has to be rendered is rendered in half its size, to be there sooner.
+  bool preview = false;
   /// The way to the client is slow: a recorded JPEG is encoded again, not passed on.
   bool sparing = false;
   /// Encodes the picture as video; it becomes a JPEG nevertheless if it is passed on as recorded,

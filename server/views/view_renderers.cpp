@@ -5,6 +5,7 @@
 
 #include "server/camera/watched_tiles.hpp"
 #include "server/record/rows/rows.hpp"
+#include "server/views/tiles_along.hpp"
 
 namespace overfly::server {
 namespace {
@@ -43,6 +44,15 @@ ViewRenderers::WorldView* ViewRenderers::known_view(const std::string& run_id) {
   return nullptr;
 }
 
+void ViewRenderers::read_ground(const WorldView& view, const std::string& run_id) {
+  const auto timeline = runs_.timeline(run_id);
+  if (!timeline) return;
+  // Previews of the camera need the second level and coarser ones; scenes look from farther away.
+  const terrain::TileSource& tiles = *view.world->tiles;
+  view.tiles->read_when_idle(tiles_along(**timeline, tiles, 2, 2.0), renderer::PixelFormat::kRgb8);
+  view.tiles->read_when_idle(tiles_along(**timeline, tiles, 1, 1.0), renderer::PixelFormat::kGrey8);
+}
+
 Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_id) {
   // A viewer of a run keeps its world even if the files change.
   if (WorldView* known = known_view(run_id)) return known;
@@ -61,12 +71,17 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   } else {
     while (views_.size() >= kMaxRenderers) views_.pop_back();
     auto tiles = std::make_shared<const WatchedTiles>((*world)->tiles, &stopping_);
-    auto renderer =
-        make_renderer(**scenario, std::move(tiles), runs_.renderer_factory(), kTileCacheBytes);
+    renderer::RendererOptions options;
+    options.tile_cache_bytes = kTileCacheBytes;
+    options.tile_store = std::make_shared<renderer::TileStore>(
+        tiles, renderer::TileStoreOptions{kTileCacheBytes, 1});
+    auto renderer = make_renderer(**scenario, tiles, runs_.renderer_factory(), options);
     if (!renderer) return renderer.error();
-    views_.push_front({*world, choice, std::move(*renderer), {}});
+    views_.push_front({*world, choice, options.tile_store, std::move(*renderer), {}});
   }
   WorldView& view = views_.front();
+  // A renderer of the factory has its own tiles.
+  if (!runs_.renderer_factory()) read_ground(view, run_id);
   view.runs.push_front({run_id, nullptr});
   if (view.runs.size() > kMaxRuns) view.runs.pop_back();
   return &view;

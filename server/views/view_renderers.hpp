@@ -9,6 +9,7 @@
 
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
+#include "renderer/tiles/tile_store.hpp"
 #include "server/camera/frame_remaker.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/runs/run_manager.hpp"
@@ -28,6 +29,7 @@ class ViewRenderers {
   struct WorldView {
     std::shared_ptr<const terrain::World> world;
     RendererChoice choice;
+    std::shared_ptr<renderer::TileStore> tiles;
     std::unique_ptr<renderer::Renderer> renderer;
     struct Watched {
       std::string run_id;
@@ -49,6 +51,8 @@ class ViewRenderers {
   [[nodiscard]] Result<std::optional<Frames>> frames_of(const std::string& run_id);
 
  private:
+  /// Requests the ground below the run's flight, so that a jump in time finds it in memory.
+  void read_ground(const WorldView& view, const std::string& run_id);
   [[nodiscard]] Result<const Scenario*> scenario_of(const std::string& run_id);
   /// The view that was given to the run earlier; null if there is none that still works.
   WorldView* known_view(const std::string& run_id);

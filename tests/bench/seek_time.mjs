@@ -1,8 +1,10 @@
 // Measures how long the dashboard takes from a click on the time line to the correct pictures: a run of ten
 // minutes with three estimators, headless Chromium on the server's machine. Needs the packages of tests/e2e.
 //
-// Usage: node tests/bench/seek_time.mjs [--runs FOLDER] [--seeks N] [--record]
+// Usage: node tests/bench/seek_time.mjs [--runs FOLDER] [--seeks N] [--pause-ms MS] [--record]
 //   --runs FOLDER  keeps the flown run here, or uses the one that is here
+//   --pause-ms MS  between the pictures of one seek and the click of the next; 0 clicks while the server still
+//                  draws the pictures of the last seek in full
 //   --record       flies with recorded images, so that the camera's picture is read instead of rendered
 import { existsSync, mkdirSync } from 'node:fs';
 import path from 'node:path';
@@ -13,6 +15,7 @@ import { flyCourse } from '../e2e/support/flights.mjs';
 import { makeRunsFolder, startServer } from '../e2e/support/server.mjs';
 
 const kDuration_s = 600;
+const kFirstLook_ms = 5000;
 const kLength_m = 3300; // of the course
 const kPanels = ['timeline', 'camera', 'scene'];
 
@@ -20,6 +23,7 @@ const { values: options } = parseArgs({
   options: {
     runs: { type: 'string' },
     seeks: { type: 'string', default: '60' },
+    'pause-ms': { type: 'string', default: '700' },
     record: { type: 'boolean', default: false },
   },
 });
@@ -93,11 +97,14 @@ try {
   const dashboard = new Dashboard(browser.page);
   await dashboard.open(`${server.address}#layout=fly&run=${id}&t=10`);
   await dashboard.untilSameInstant(['scene', 'camera']);
+  // As somebody who looks at the page first: meanwhile the server reads the ground below the flight.
+  await browser.page.waitForTimeout(kFirstLook_ms);
   const random = randoms(1);
   const times = [];
   for (let i = 0; i < Number(options.seeks); ++i) {
     times.push(await seek(browser.page, 0.02 + 0.96 * random()));
     await dashboard.untilSameInstant(['scene', 'camera']);
+    await browser.page.waitForTimeout(Number(options['pause-ms']));
   }
   for (const name of kPanels) {
     const of = times.map((time) => time[name]);

@@ -1,6 +1,7 @@
 #include "renderer/raycast/paint/texel_tiles.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace overfly::renderer::raycast {
 
@@ -22,6 +23,20 @@ std::shared_ptr<const PackedTile> TexelTiles::keep(const Key& key, const TilePix
   order_.push_front(key);
   entries_.emplace(key, Entry{texels, order_.begin()});
   return texels;
+}
+
+std::vector<TileId> TexelTiles::missing_of(const std::vector<TileId>& ids,
+                                           PixelFormat format) const {
+  std::vector<TileId> missing;
+  std::copy_if(ids.begin(), ids.end(), std::back_inserter(missing), [&](const TileId& id) {
+    return entries_.count({id, format}) == 0;
+  });
+  return missing;
+}
+
+void TexelTiles::load(const std::vector<TileId>& ids, PixelFormat format) {
+  const std::vector<TileId> missing = missing_of(ids, format);
+  if (missing.size() > 1) store_->load(missing, format);
 }
 
 Result<FoundTile> TexelTiles::get(const TileId& id, PixelFormat format) {
@@ -50,10 +65,7 @@ Result<FoundTile> TexelTiles::find(const TileId& id, PixelFormat format) {
 }
 
 bool TexelTiles::prefetch(const std::vector<TileId>& ids, PixelFormat format) {
-  std::vector<TileId> missing;
-  std::copy_if(ids.begin(), ids.end(), std::back_inserter(missing), [&](const TileId& id) {
-    return entries_.count({id, format}) == 0;
-  });
+  const std::vector<TileId> missing = missing_of(ids, format);
   store_->prefetch(missing, format);
   // One per frame, so that a row of tiles that comes into view does not slow down a single frame.
   for (const TileId& id : missing) {

@@ -23,6 +23,8 @@ class TexelTiles {
  public:
   TexelTiles(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
+  /// Reads those that are not in memory, several at once. Errors are reported by get().
+  void load(const std::vector<terrain::TileId>& ids, PixelFormat format);
   /// The tile itself, read if needed. Errors: kIo naming the tile.
   [[nodiscard]] Result<FoundTile> get(const terrain::TileId& id, PixelFormat format);
   /// The best tile available now: the tile, or the nearest coarser one; a missing tile is
@@ -42,6 +44,8 @@ class TexelTiles {
     std::shared_ptr<const PackedTile> texels;
     Order::iterator place;
   };
+  [[nodiscard]] std::vector<terrain::TileId> missing_of(const std::vector<terrain::TileId>& ids,
+                                                        PixelFormat format) const;
   std::shared_ptr<const PackedTile> held(const Key& key);
   std::shared_ptr<const PackedTile> keep(const Key& key, const TilePixels& pixels);
 

@@ -1,6 +1,7 @@
 #include "server/net/stream/picture_streams.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
@@ -13,8 +14,11 @@ using server::PictureRequest;
 
 /// A view that was changed so recently is being moved.
 constexpr std::int64_t kViewMovesNs = 300'000'000;
-/// A scene that took longer to draw is previewed after a jump in time.
-constexpr std::int64_t kLongDrawingNs = 30'000'000;
+/// A scene or frame that took longer to draw is previewed after a jump in time.
+constexpr std::int64_t kLongDrawingNs = 15'000'000;
+/// A picture previewed after a jump is drawn in full once no other jump has followed for so long:
+/// the next preview would have to wait for it.
+constexpr std::int64_t kPreviewStandsNs = 200'000'000;
 /// Pictures are not reduced below this quality, unless the client asks for it.
 constexpr int kLeastQuality = 30;
 
@@ -123,9 +127,14 @@ bool PictureStreams::view_moves(const Stream& stream, std::int64_t now_ns) const
 }
 
 bool PictureStreams::wants_preview(const Stream& stream) {
-  // The other pictures are made in the camera's size, and then reduced.
-  return stream.jumped && !stream.moving && stream.drawing_ns > kLongDrawingNs &&
-         kind_of(stream.request.name) == PictureRequest::Kind::kScene;
+  const PictureRequest::Kind kind = kind_of(stream.request.name);
+  const bool rendered =
+      kind == PictureRequest::Kind::kScene || kind == PictureRequest::Kind::kCamera;
+  return rendered && stream.jumped && !stream.moving && stream.drawing_ns > kLongDrawingNs;
+}
+
+bool PictureStreams::preview_stands(const Stream& stream, std::int64_t now_ns) {
+  return stream.preview && now_ns - stream.requested_ns < kPreviewStandsNs;
 }
 
 void PictureStreams::show_again() {
@@ -141,7 +150,7 @@ void PictureStreams::show_after_jump() {
 /// While processor time is short, because a real-time flight limits the pictures, video is made
 /// only for a client that needs it: it takes several times the time of a JPEG.
 void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const {
-  stream->reduced = stream->preview = wants_preview(*stream);
+  stream->reduced = stream->preview = request->preview = wants_preview(*stream);
   if (stream->preview) {
     request->scene.width_px >>= 1;
     request->scene.height_px >>= 1;
@@ -183,7 +192,8 @@ bool PictureStreams::request_one(Stream* stream,
     count_unshown(stream);
   }
   stream->moving = playing || view_moves(*stream, now_ns);
-  const bool full = !stream->moving && stream->reduced && !wants_preview(*stream);
+  const bool full = !stream->moving && stream->reduced && !wants_preview(*stream) &&
+                    !preview_stands(*stream, now_ns);
   stream->slot.want({instant->frame, change_of(*stream), others, full});
   const std::size_t bytes = expected_bytes(*stream);
   if (acknowledges_ && stream->slot.due(now_ns)) {
@@ -214,7 +224,10 @@ std::vector<PictureStreams::Stream*> PictureStreams::in_turn() {
   std::vector<Stream*> streams;
   for (Stream& stream : streams_) streams.push_back(&stream);
   const auto place = [](const Stream* stream) {
-    return std::pair(!wants_preview(*stream), stream->requested_ns);
+    const bool frame_after_jump =
+        stream->jumped && kind_of(stream->request.name) == PictureRequest::Kind::kCamera;
+    const bool scene = kind_of(stream->request.name) == PictureRequest::Kind::kScene;
+    return std::tuple(!(scene && wants_preview(*stream)), !frame_after_jump, stream->requested_ns);
   };
   std::stable_sort(streams.begin(), streams.end(), [&](const Stream* a, const Stream* b) {
     return place(a) < place(b);
@@ -230,7 +243,7 @@ void PictureStreams::pump(const std::vector<Instant>& instants,
   bool blocked = false;
   bool held = false;
   bool waits = false;
-  view_moved_ = false;
+  changes_soon_ = false;
   for (Stream* stream : in_turn()) {
     // While one waits for room, those after it wait too, so that a large one gets its turn.
     const bool room = !held;
@@ -238,7 +251,7 @@ void PictureStreams::pump(const std::vector<Instant>& instants,
     waits = waits || (held && window_.link_is_full(expected_bytes(*stream)));
     moving = moving || stream->moving;
     blocked = blocked || (stream->moving && (waits || stream->slot.blocked(now_ns)));
-    view_moved_ = view_moved_ || view_moves(*stream, now_ns);
+    changes_soon_ = changes_soon_ || view_moves(*stream, now_ns) || preview_stands(*stream, now_ns);
   }
   if (!acknowledges_) return;
   window_.note(waits, now_ns);
@@ -321,7 +334,7 @@ void PictureStreams::sent(const PictureTicket& ticket) {
 }
 
 bool PictureStreams::waiting() const {
-  if (view_moved_) return true;
+  if (changes_soon_) return true;
   return std::any_of(
       streams_.begin(), streams_.end(), [](const Stream& stream) { return stream.slot.waiting(); });
 }

@@ -72,7 +72,7 @@ class PictureStreams {
              std::int64_t now_ns);
   void sent(const PictureTicket& ticket);
 
-  /// True if a picture waits only for its time, or a view has just been moved.
+  /// True if a picture waits only for its time, or a view has just been moved or previewed.
   [[nodiscard]] bool waiting() const;
   /// By how much moving pictures are reduced for the client (LinkMeter). @return true if it changed
   /// since the last call
@@ -117,12 +117,15 @@ class PictureStreams {
                    bool room,
                    ViewerPort* port,
                    std::int64_t now_ns);
-  /// Previews first, then those that were not requested for the longest time.
+  /// Previews of scenes first, then the frames of a jump, then those that were not requested for
+  /// the longest time.
   std::vector<Stream*> in_turn();
   /// Reduces a moving picture, and chooses its coding.
   void fit_to_link(Stream* stream, server::PictureRequest* request) const;
   /// Whether its next picture is to be drawn in half the size, to be there sooner.
   static bool wants_preview(const Stream& stream);
+  /// Whether its preview is new, so that the whole picture is to wait.
+  static bool preview_stands(const Stream& stream, std::int64_t now_ns);
   [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
   static void count_unshown(Stream* stream);
   /// Adds the other runs that a scene shows. @return the sum of their frames
@@ -155,7 +158,7 @@ class PictureStreams {
   LinkMeter link_;
   SendWindow window_;
   int reduction_told_ = 0;
-  bool view_moved_ = false;  ///< in the last pump
+  bool changes_soon_ = false;  ///< a view was moving, or a preview stood, in the last pump
   std::uint64_t change_ = 0;
   std::uint64_t tickets_ = 0;
 };

@@ -114,6 +114,21 @@ void FrameImages::remember(const ViewedFrame& frame, const StampedImage& live) {
   if (find(key) == nullptr) keep(key, {live.image, {}});
 }
 
+FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFrame& frame) {
+  if (find(key_of("received", frame)) != nullptr) return std::optional(SharedImage());
+  const auto again = renderers_.frames_of(frame.run_id);
+  if (!again) return again.error();
+  if (!*again) return std::optional<SharedImage>();
+  FrameRemaker& maker = (*again)->maker;
+  if (!maker.is_as_rendered(frame.camera, frame.row)) return std::optional(SharedImage());
+  auto request = drawn_request(frame, maker);
+  if (!request) return request.error();
+  request->camera = half_sized(request->camera);
+  auto drawn = (*again)->renderer.render_camera(*request);
+  if (!drawn) return drawn.error();
+  return std::optional(std::make_shared<const Image>(std::move(drawn->image)));
+}
+
 FrameImages::Made<ScaledImage> FrameImages::depth(const ViewedFrame& frame, int max_width_px) {
   const auto again = renderers_.frames_of(frame.run_id);
   if (!again) return again.error();

@@ -104,10 +104,27 @@ FramePainter::Painted FramePainter::camera(const PictureRequest& request,
   if (fs::is_regular_file(recorded, error)) {
     return painted(encoder_.encode_file(recorded, row.frame, row.t_ns, request));
   }
+  if (request.preview) {
+    const auto half = images_.preview(frame);
+    if (!half) return half.error();
+    if (!*half) return std::optional<Picture>();
+    if (**half) return previewed(request, frame, **half);
+  }
   const auto image = images_.received(frame);
   if (!image) return image.error();
   if (!*image) return std::optional<Picture>();
   return painted(encoder_.encode({row.frame, row.t_ns, **image}, request));
+}
+
+FramePainter::Painted FramePainter::previewed(const PictureRequest& request,
+                                              const ViewedFrame& frame,
+                                              const std::shared_ptr<const Image>& half) {
+  Result<Picture> picture = encoder_.encode({frame.row.frame, frame.row.t_ns, half}, request);
+  if (!picture) return picture.error();
+  const PinholeCamera& whole = frame.timeline->cameras()[frame.camera].model.pinhole();
+  picture->full_width_px = whole.width_px;
+  picture->full_height_px = whole.height_px;
+  return painted(std::move(picture));
 }
 
 FramePainter::Painted FramePainter::depth(const PictureRequest& request, const ViewedFrame& frame) {

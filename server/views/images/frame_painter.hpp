@@ -53,6 +53,9 @@ class FramePainter {
   [[nodiscard]] Probed probe(const PixelRequest& request);
 
  private:
+  [[nodiscard]] Painted previewed(const PictureRequest& request,
+                                  const ViewedFrame& frame,
+                                  const std::shared_ptr<const Image>& half);
   [[nodiscard]] Painted scaled(const PictureRequest& request,
                                const ViewedFrame& frame,
                                const ScaledImage& image);

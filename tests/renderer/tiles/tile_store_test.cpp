@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include "renderer/tiles/tile_pixels.hpp"
@@ -143,6 +147,74 @@ TEST(TileStore, FetchingAheadLeavesRoomForWhatIsInUse) {
   EXPECT_NE(store.peek({0, 1, 0}, PixelFormat::kGrey8), nullptr);
   EXPECT_NE(store.peek({0, 2, 0}, PixelFormat::kGrey8), nullptr);
   EXPECT_LE(store.held_bytes(), 3 * tile_bytes);
+}
+
+/// Waits in the first call of each thread until two threads have called.
+class Rendezvous {
+ public:
+  void arrive() {
+    std::unique_lock lock(mutex_);
+    if (!threads_.insert(std::this_thread::get_id()).second) return;
+    arrived_.notify_all();
+    arrived_.wait_for(lock, std::chrono::seconds(60), [this] { return threads_.size() > 1; });
+  }
+  std::size_t threads() {
+    const std::lock_guard lock(mutex_);
+    return threads_.size();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::set<std::thread::id> threads_;
+};
+
+TEST(TileStore, LoadsSeveralTilesAtOnceAndEachOnce) {
+  Rendezvous both;
+  ProceduralGround::Options options;
+  options.paint = [&](double, double) {
+    both.arrive();
+    return 60.0;
+  };
+  const auto tiles = std::make_shared<ProceduralGround>(options);
+  TileStore store(tiles, {});
+  const std::vector<TileId> ids{{0, 1, 1}, {0, 2, 1}, {0, 1, 1}, {1, 0, 0}, {0, 3, 1}};
+  store.load(ids, PixelFormat::kGrey8);
+  EXPECT_EQ(both.threads(), 2U);
+  for (const TileId& id : ids) EXPECT_TRUE(store.get(id, PixelFormat::kGrey8).ok());
+  EXPECT_EQ(tiles->tiles_read(), 4);
+  EXPECT_GE(store.counts().read_on_demand, 1);
+  store.load(ids, PixelFormat::kGrey8);
+  EXPECT_EQ(tiles->tiles_read(), 4);
+}
+
+TEST(TileStore, ReportsWhatCouldNotBeLoadedWhenItIsWanted) {
+  TileStore store(ground(0), {});
+  store.load(std::vector<TileId>{{0, 3, 2}, {0, 4, 2}}, PixelFormat::kGrey8);
+  EXPECT_EQ(store.get({0, 3, 2}, PixelFormat::kGrey8).error().code, ErrorCode::kIo);
+  store.wait_until_idle();
+}
+
+TEST(TileStore, ReadsWhenIdleOnlyWhatEvictsNothing) {
+  const auto tiles = ground();
+  const std::size_t tile_bytes =
+      tile_pixels_from(tiles->tile({0, 0, 0}).value(), PixelFormat::kGrey8).bytes();
+  TileStore store(tiles, {3 * tile_bytes, 1});
+  ASSERT_TRUE(store.get({0, 0, 0}, PixelFormat::kGrey8).ok());
+  store.read_when_idle(std::vector<TileId>{{0, 1, 0}, {0, 2, 0}, {0, 3, 0}, {0, 4, 0}},
+                       PixelFormat::kGrey8);
+  store.wait_until_idle();
+  for (const int col : {0, 1, 2}) {
+    EXPECT_NE(store.peek({0, col, 0}, PixelFormat::kGrey8), nullptr) << col;
+  }
+  for (const int col : {3, 4}) {
+    EXPECT_EQ(store.peek({0, col, 0}, PixelFormat::kGrey8), nullptr) << col;
+  }
+  for (int i = 0; i < 2; ++i) {
+    store.prefetch(std::vector<TileId>{{0, 5, 0}}, PixelFormat::kGrey8);
+    store.wait_until_idle();
+  }
+  EXPECT_NE(store.peek({0, 5, 0}, PixelFormat::kGrey8), nullptr) << "more urgent";
 }
 
 TEST(TileStore, NamesATileThatCannotBeRead) {

@@ -153,6 +153,7 @@ TEST_F(PictureStreamsTest, SendsTheLastPictureAgainInFullWhenItComesToRest) {
 
 constexpr std::int64_t kQuickNs = 5'000'000;
 constexpr std::int64_t kLongNs = 60'000'000;
+constexpr std::int64_t kPreviewStandsNs = 200'000'000;
 
 TEST_F(PictureStreamsTest, PreviewsASceneThatTakesLongAfterAJump) {
   subscribe_scene();
@@ -161,6 +162,9 @@ TEST_F(PictureStreamsTest, PreviewsASceneThatTakesLongAfterAJump) {
   for (int jump = 0; jump < 3; ++jump) {
     streams_.show_after_jump();
     EXPECT_EQ(show_scene(kQuickNs), width_px / 2) << jump;
+    EXPECT_FALSE(next(false)) << "a next jump may follow";
+    EXPECT_TRUE(streams_.waiting());
+    now_ns_ += kPreviewStandsNs;
     EXPECT_EQ(show_scene(kLongNs), width_px) << jump;
     EXPECT_FALSE(next(false)) << "once";
   }
@@ -173,11 +177,16 @@ TEST_F(PictureStreamsTest, PreviewsAgainIfTheNextJumpComesBeforeTheWholeScene) {
   EXPECT_EQ(show_scene(kQuickNs), width_px / 2);
   streams_.show_after_jump();
   EXPECT_EQ(show_scene(kQuickNs), width_px / 2);
+  now_ns_ += kPreviewStandsNs;
   EXPECT_EQ(show_scene(kLongNs), width_px);
+  EXPECT_FALSE(next(false));
+  EXPECT_FALSE(streams_.waiting());
 }
 
-TEST_F(PictureStreamsTest, DrawsThePreviewBeforeTheOtherPictures) {
-  streams_.subscribe({{StreamRequest{"r", "camera"}, StreamRequest{"r", "scene"}}, false});
+TEST_F(PictureStreamsTest, DrawsThePreviewThenTheFrameThenTheOthersAfterAJump) {
+  streams_.subscribe(
+      {{StreamRequest{"r", "depth"}, StreamRequest{"r", "camera"}, StreamRequest{"r", "scene"}},
+       false});
   using Kind = server::PictureRequest::Kind;
   const auto drawn = [&] {
     now_ns_ += kPeriodNs;
@@ -191,9 +200,9 @@ TEST_F(PictureStreamsTest, DrawsThePreviewBeforeTheOtherPictures) {
     }
     return kinds;
   };
-  EXPECT_EQ(drawn(), (std::vector{Kind::kCamera, Kind::kScene}));
+  EXPECT_EQ(drawn(), (std::vector{Kind::kDepth, Kind::kCamera, Kind::kScene}));
   streams_.show_after_jump();
-  EXPECT_EQ(drawn(), (std::vector{Kind::kScene, Kind::kCamera}));
+  EXPECT_EQ(drawn(), (std::vector{Kind::kScene, Kind::kCamera, Kind::kDepth}));
 }
 
 TEST_F(PictureStreamsTest, DoesNotPreviewASceneThatIsDrawnQuickly) {
@@ -212,14 +221,21 @@ TEST_F(PictureStreamsTest, DoesNotPreviewSteps) {
   EXPECT_EQ(show_scene(kLongNs), width_px);
 }
 
-TEST_F(PictureStreamsTest, DoesNotPreviewTheCamera) {
+TEST_F(PictureStreamsTest, PreviewsAFrameThatTakesLongAfterAJump) {
   subscribe(false, true);
-  const int width_px = next(false)->max_width_px;
+  const auto first = next(false);
+  EXPECT_FALSE(first->preview);
   drawing_ns_ = kLongNs;
   send();
   show_all();
   streams_.show_after_jump();
-  EXPECT_EQ(next(false)->max_width_px, width_px);
+  const auto preview = next(false);
+  EXPECT_TRUE(preview->preview);
+  EXPECT_EQ(preview->max_width_px, first->max_width_px);
+  send();
+  show_all();
+  now_ns_ += kPreviewStandsNs;
+  EXPECT_FALSE(next(false)->preview);
 }
 
 TEST_F(PictureStreamsTest, BeginsAnewWhenTheClientLostAPicture) {

@@ -99,6 +99,42 @@ TEST_F(FramePictures, AReducedDepthKnowsTheSizeOfTheWholeImage) {
   EXPECT_EQ(depth->full_height_px, 120);
 }
 
+TEST_F(FramePictures, APreviewShowsTheFrameInHalfItsSize) {
+  const std::string id = fly(perfect());
+  PictureRequest request = request_of(PictureRequest::Kind::kCamera, id);
+  request.preview = true;
+  const auto preview = picture(request);
+  ASSERT_TRUE(preview.ok()) << preview.error().message;
+  EXPECT_EQ(preview->frame, 8);
+  EXPECT_EQ(preview->width_px, 80);
+  EXPECT_EQ(preview->full_width_px, 160);
+  EXPECT_EQ(preview->full_height_px, 120);
+  request.preview = false;
+  EXPECT_EQ(picture(request)->width_px, 160);
+  request.max_width_px = 80;
+  const Image halved = decode_jpeg(*picture(request)->bytes).value();
+  const Image half = decode_jpeg(*preview->bytes).value();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < half.data.size(); ++i) sum += std::abs(half.data[i] - halved.data[i]);
+  EXPECT_LT(sum / static_cast<double>(half.data.size()), 4.0) << "the same ground";
+}
+
+TEST_F(FramePictures, AFrameThatIsNotOnlyRenderedHasNoPreview) {
+  auto overrides = perfect();
+  overrides.push_back(camera_with(R"("sensor":{"vignette":[-0.3,0,0]})"));
+  overrides.push_back(
+      {"faults", nlohmann::json::parse(R"([{"kind":"blackout","at_s":1.5,"duration_s":0.4}])")});
+  PictureRequest request = request_of(PictureRequest::Kind::kCamera, fly(overrides));
+  request.preview = true;
+  EXPECT_EQ(picture(request)->width_px, 160);
+  overrides.erase(overrides.end() - 2);
+  overrides.push_back(camera_with(R"("color":"grey")"));
+  request.run_id = fly(overrides);
+  EXPECT_EQ(picture(request)->width_px, 80);
+  request.t_ns = 16 * kPeriodNs;
+  EXPECT_EQ(picture(request)->width_px, 160) << "black";
+}
+
 TEST_F(FramePictures, APlainCameraHasNoSensorEffects) {
   const std::string id = fly(perfect());
   const auto error = picture(request_of(PictureRequest::Kind::kError, id));
