@@ -17,6 +17,7 @@ std::optional<Spread> spread_of(const std::vector<double>& values) {
 }
 
 struct ErrorValues {
+  std::size_t flights = 0;
   std::vector<double> position_m;
   std::vector<double> rotation_deg;
   std::vector<double> horizontal_m;
@@ -34,7 +35,8 @@ struct ErrorValues {
     for (std::size_t i = 0; i < fix_drift.size(); ++i) {
       fix_drift[i] = {spread_of(fix_medians_m[i]), fix_worst_m[i]};
     }
-    return {spread_of(position_m),
+    return {flights,
+            spread_of(position_m),
             spread_of(rotation_deg),
             spread_of(horizontal_m),
             spread_of(vertical_m),
@@ -75,8 +77,10 @@ void add_fix_drift(const evaluation::AlignmentScore& score, ErrorValues& values)
 void add_flight_errors(const FlightScore& flight,
                        const ErrorConvention& convention,
                        ErrorValues& values) {
+  if (!convention.counts(flight)) return;
+  ++values.flights;
   const auto found = flight.score.alignments.find(convention.mode);
-  if (!convention.counts(flight) || found == flight.score.alignments.end()) return;
+  if (found == flight.score.alignments.end()) return;
   const evaluation::AlignmentScore& score = found->second;
   const double position_m = convention.hold ? score.position_rmse_hold_m : score.position_m.rmse;
   keep(values.position_m, position_m);

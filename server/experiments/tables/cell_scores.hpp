@@ -60,6 +60,7 @@ struct CellFixDrift {
 
 /// Empty where no flight counts: an X enters no mean.
 struct CellErrors {
+  std::size_t flights = 0;  ///< that count, whether the alignment determines their errors or not
   std::optional<Spread> position_m;
   std::optional<Spread> rotation_deg;
   std::optional<Spread> horizontal_m;  ///< without holding the last pose

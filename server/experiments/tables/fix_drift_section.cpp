@@ -18,7 +18,7 @@ bool has_drift(const CellErrors& errors) {
 /// The median of the flights' medians with its quartiles, then the worst of all flights.
 std::string drift_text(const CellFixDrift& drift) {
   if (!drift.median_m) return "-";
-  return quartiles_text(drift.median_m, drift.median_m) + " / " + error_number(drift.worst_m);
+  return quartiles_text(*drift.median_m) + " / " + error_number(drift.worst_m);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TableCell median_cell(const CellRows& rows,
   const CellScores* const row = rows[i];
   if (row == nullptr) return {"", false};
   const CellErrors& errors = row->errors[convention];
-  if (!medians.values[i]) return {errors.position_m ? "-" : "X", false};
+  if (!medians.values[i]) return {no_value_text(errors), false};
   const double value = *medians.values[i];
   std::string text = error_number(value);
   const std::size_t counted = (errors.*quantity)->flights;
@@ -172,8 +172,9 @@ DocumentSection outcome_section(const SweepTables& tables) {
     line.push_back(
         {percent(share) + " [" + percent(row.success.low) + ", " + percent(row.success.high) + "]",
          false});
-    line.push_back({quartiles_text(errors.position_m, errors.position_m), false});
-    line.push_back({quartiles_text(errors.rotation_deg, errors.position_m), false});
+    for (const auto& spread : {errors.position_m, errors.rotation_deg}) {
+      line.push_back({spread ? quartiles_text(*spread) : no_value_text(errors), false});
+    }
     section.table.rows.push_back(std::move(line));
   }
   const auto limited = [](const CellScores& row) { return row.texture_limited; };
@@ -210,10 +211,8 @@ DocumentSection honesty_section(const SweepTables& tables, std::size_t conventio
     for (const std::size_t count : {honesty.flights, honesty.overconfident, honesty.too_cautious}) {
       line.push_back({std::to_string(count), false});
     }
-    line.push_back({honesty.deviation_ratio
-                        ? quartiles_text(honesty.deviation_ratio, honesty.deviation_ratio)
-                        : "-",
-                    false});
+    const auto& ratio = honesty.deviation_ratio;
+    line.push_back({ratio ? quartiles_text(*ratio) : "-", false});
     section.table.rows.push_back(std::move(line));
   }
   return section;

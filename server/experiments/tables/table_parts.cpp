@@ -32,12 +32,12 @@ std::vector<TableCell> estimator_cells(const SweepScores& scores, const CellScor
   return cells;
 }
 
-std::string quartiles_text(const std::optional<Spread>& spread,
-                           const std::optional<Spread>& position) {
-  if (!spread) return position ? "-" : "X";
-  if (spread->flights < 2) return error_number(spread->quartiles.median);
-  return error_number(spread->quartiles.median) + " [" + error_number(spread->quartiles.low) +
-         ", " + error_number(spread->quartiles.high) + "]";
+std::string no_value_text(const CellErrors& errors) { return errors.flights > 0 ? "-" : "X"; }
+
+std::string quartiles_text(const Spread& spread) {
+  if (spread.flights < 2) return error_number(spread.quartiles.median);
+  return error_number(spread.quartiles.median) + " [" + error_number(spread.quartiles.low) + ", " +
+         error_number(spread.quartiles.high) + "]";
 }
 
 }  // namespace overfly::server::experiments

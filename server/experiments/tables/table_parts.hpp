@@ -23,9 +23,10 @@ void add_estimator_columns(const SweepScores& scores, std::vector<TableColumn>& 
 [[nodiscard]] std::vector<TableCell> estimator_cells(const SweepScores& scores,
                                                      const CellScores& row);
 
-/// "1.23 [1.1, 1.4]"; X if no flight counts, - if those that count have no such value.
-/// @param position  of the same flights
-[[nodiscard]] std::string quartiles_text(const std::optional<Spread>& spread,
-                                         const std::optional<Spread>& position);
+/// X if no flight counts, - if those that count have no such value.
+[[nodiscard]] std::string no_value_text(const CellErrors& errors);
+
+/// "1.23 [1.1, 1.4]".
+[[nodiscard]] std::string quartiles_text(const Spread& spread);
 
 }  // namespace overfly::server::experiments

@@ -34,6 +34,7 @@ struct Made {
   std::string type = "process";
   std::vector<double> nees = {};  ///< of the positions, if it states covariances
   std::vector<evaluation::FixDrift> fix_drift = {};
+  bool moves = true;  ///< false: Sim(3) does not determine its errors
 };
 
 evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
@@ -83,7 +84,10 @@ class SweepTablesTest : public ::testing::Test {
       estimator.score.initialised_at_s = 1.0;
       estimator.score.alignments[AlignmentMode::kInitScale] =
           alignment(AlignmentMode::kInitScale, made, 1.0);
-      estimator.score.alignments[AlignmentMode::kSim3] = alignment(AlignmentMode::kSim3, made, 0.1);
+      if (made.moves) {
+        estimator.score.alignments[AlignmentMode::kSim3] =
+            alignment(AlignmentMode::kSim3, made, 0.1);
+      }
     }
     fs::create_directories(folder_ / "runs" / id);
     std::ofstream(folder_ / "runs" / id / "metrics.json") << json_from(metrics);
@@ -133,6 +137,17 @@ TEST_F(SweepTablesTest, HighlightsTheLowestAndMarksCellsWithoutACountingFlight) 
   EXPECT_THAT(text, HasSubstr("Height [m]"));
   EXPECT_THAT(text, HasSubstr("one rotation [deg]"));
   EXPECT_THAT(text, HasSubstr("# Made \\| up"));
+}
+
+TEST_F(SweepTablesTest, MarksErrorsThatTheAlignmentDoesNotDetermine) {
+  add({"one", 50, 0, 2.0, 0.1});
+  Made hold{"hold", 50, 0, 3.0, 0.2};
+  hold.moves = false;
+  add(hold);
+  const std::string text = markdown();
+  EXPECT_THAT(text, HasSubstr("| 50.0 | **4.00** |  | 6.00 | **0.150** |  | 0.300 |\n"));
+  EXPECT_THAT(text, HasSubstr("| 50.0 | **0.200** |  | - | **0.100** |  | - |\n"));
+  EXPECT_THAT(text, HasSubstr("| 50.0 | hold | 1 COMPLETED | 1 | 100 [21, 100] | - | - |"));
 }
 
 TEST_F(SweepTablesTest, AnXEntersNoMedian) {
