@@ -7,12 +7,15 @@
 
 namespace overfly::app {
 
-void add_frame_cache_options(CLI::App& command, FrameCacheArguments& arguments) {
+void add_frame_cache_options(CLI::App& command,
+                             FrameCacheArguments& arguments,
+                             const std::string& default_text) {
   command.add_option(
       "--frame-cache",
       arguments.folder,
       "Folder of rendered pictures for other flights; several commands may share one. "
-      "Default: frame_cache in the folder of --out");
+      "Default: " +
+          default_text);
   command
       .add_option("--frame-cache-gib",
                   arguments.gib,

@@ -21,8 +21,13 @@ struct FrameCacheArguments {
   double gib = kFrameCacheGib;
 };
 
-/// For a command that flies a series of scenarios. @param arguments  must outlive the command
-void add_frame_cache_options(CLI::App& command, FrameCacheArguments& arguments);
+/// For a command that flies a series of scenarios.
+/// @param arguments  must outlive the command
+/// @param default_text  what is used without the option
+void add_frame_cache_options(
+    CLI::App& command,
+    FrameCacheArguments& arguments,
+    const std::string& default_text = "frame_cache in the folder of --out");
 
 /// The cache of a series that begins now. @param series  its folder
 [[nodiscard]] server::experiments::FlightFrameCache frame_cache_from(

@@ -90,6 +90,7 @@ struct ServerContext {
   [[nodiscard]] server::experiments::SweepServiceOptions sweep_options() {
     server::experiments::SweepServiceOptions sweep;
     sweep.program = options.program;
+    sweep.frame_cache_gib = options.frame_cache_gib;
     sweep.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
     sweep.log = [this](const std::string& level, const std::string& text) {
       log(level.c_str(), text);

@@ -44,6 +44,8 @@ struct ServerOptions {
   std::filesystem::path uploads_folder;
   /// This program, which flies the single scenarios of sweeps and makes studies.
   std::filesystem::path program = "/proc/self/exe";
+  /// Size of the frame cache that the sweeps share; 0 = none.
+  double frame_cache_gib = 0.0;
   /// Live cameras that calibrations may open.
   std::vector<server::LiveAddress> cameras;
   ServerLimits limits;

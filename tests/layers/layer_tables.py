@@ -240,7 +240,7 @@ MAY_INCLUDE = {
                                 "server/record/", "server/scoring/", "server/experiments",
                                 "server/experiments/pictures"],
     "server/experiments/jobs": ["core/", "server/files/", "server/runs/run_memory.hpp",
-                                "server/experiments"],
+                                "server/experiments", "server/experiments/pictures"],
     "server/experiments/service": ["core/", "evaluation", "server/files/", "server/scenario/",
                                    "server/record/", "server/runs/", "server/experiments"],
     "server/experiments/studies": ["core/", "evaluation", "server/files/", "server/scenario/",

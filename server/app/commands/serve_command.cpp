@@ -14,6 +14,7 @@
 #include "flight/mavlink/link/link_address.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/frame_cache_options.hpp"
 #include "server/app/install_paths.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/app/token_file.hpp"
@@ -45,6 +46,7 @@ struct ServeArguments {
   std::size_t max_waiting_runs = 100;  ///< further runs are refused
   std::string uploads = "uploads";
   std::string saved_scenarios = "saved-scenarios";
+  double frame_cache_gib = kFrameCacheGib;
   double upload_quota_mib = 4096.0;
   double memory_limit_mib = 0.0;
   /// Overrides may name programs to start and network addresses.
@@ -118,6 +120,7 @@ int serve(const ServeArguments& arguments) {
   options.token = std::move(*token);
   options.allowed_hosts = arguments.allowed_hosts;
   options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
+  options.frame_cache_gib = arguments.frame_cache_gib;
   options.uploads_folder = arguments.uploads;
   options.limits.uploads.quota_bytes =
       static_cast<std::uint64_t>(arguments.upload_quota_mib * 1024.0 * 1024.0);
@@ -146,6 +149,14 @@ void add_serve_command(CLI::App& app, int& exit_code) {
       ->add_option("--sweeps",
                    arguments->sweeps,
                    "Folder of the sweeps, which need not exist; an empty name = none are shown")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--frame-cache-gib",
+          arguments->frame_cache_gib,
+          "Size at most of the rendered pictures that the sweeps share, in .frame_cache of "
+          "their folder [GiB]; 0: every picture is rendered")
+      ->check(CLI::Range(0.0, kMostFrameCacheGib))
       ->capture_default_str();
   command
       ->add_option("--studies",

@@ -90,6 +90,12 @@ Result<Executor> open_executor(const SweepArguments& arguments,
     }
     if (arguments.jobs != 0) slurm.workers = arguments.jobs;
     slurm.submit_options = arguments.slurm_options;
+    if (!arguments.frame_cache.folder.empty()) {
+      slurm.worker_options = {"--frame-cache",
+                              fs::absolute(arguments.frame_cache.folder).string(),
+                              "--frame-cache-gib",
+                              number_text(arguments.frame_cache.gib)};
+    }
     slurm.warn = warn;
     auto workers = experiments::SlurmWorkers::open(std::move(slurm));
     if (!workers) return workers.error();
@@ -138,6 +144,7 @@ struct WorkArguments {
   std::size_t jobs = 0;
   std::size_t flights = 0;
   double idle_s = 60.0;
+  FrameCacheArguments frame_cache;
   bool quiet = false;
 };
 
@@ -151,6 +158,9 @@ int work(const WorkArguments& arguments) {
   options.jobs = arguments.jobs == 0 ? default_jobs() : arguments.jobs;
   if (arguments.flights != 0) options.most_flights = arguments.flights;
   options.idle_s = arguments.idle_s;
+  if (!arguments.frame_cache.folder.empty()) {
+    options.frame_cache = frame_cache_from(arguments.frame_cache, options.sweep);
+  }
   if (!arguments.quiet) {
     options.note = [](const std::string& text) { std::cerr << text << std::endl; };
   }
@@ -185,9 +195,12 @@ std::string misuse(const CLI::App& command, const SweepArguments& arguments) {
     return "--slurm-option: needs --executor slurm";
   }
   for (const char* option : {"--frame-cache", "--frame-cache-gib"}) {
-    if (executor != "local" && command.count(option) > 0) {
-      return std::string(option) + ": needs --executor local";
+    if (executor == "folder" && command.count(option) > 0) {
+      return std::string(option) + ": is an option of the workers with --executor folder";
     }
+  }
+  if (executor == "slurm" && command.count("--frame-cache-gib") > command.count("--frame-cache")) {
+    return "--frame-cache-gib: needs --frame-cache with Slurm: a folder on the nodes";
   }
   if (executor == "local" && command.count("--lease-s") > 0) {
     return "--lease-s: needs --executor folder or slurm";
@@ -236,6 +249,8 @@ void add_work_command(CLI::App& sweep_command, int& exit_code) {
   command->add_option("--idle-s", arguments->idle_s, "End after so many seconds without a flight")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+  add_frame_cache_options(*command, arguments->frame_cache, "none");
+  command->get_option("--frame-cache-gib")->needs(command->get_option("--frame-cache"));
   command->add_flag("--quiet", arguments->quiet, "No messages about flights");
   command->callback([arguments, &exit_code] { exit_code = work(*arguments); });
 }

@@ -37,7 +37,8 @@ JobWorker::JobWorker(WorkerOptions options)
     : options_(std::move(options)),
       folder_(options_.sweep),
       budget_(MemoryBudget::of_machine(false)),
-      processes_(std::make_unique<FlightProcesses>(options_.program)),
+      processes_(std::make_unique<FlightProcesses>(
+          options_.program, frame_cache_options(options_.frame_cache, true))),
       next_beat_(Clock::now()),
       next_look_(next_beat_),
       busy_(next_beat_),

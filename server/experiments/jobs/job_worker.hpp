@@ -16,6 +16,7 @@
 #include "core/result.hpp"
 #include "server/experiments/flight_process.hpp"
 #include "server/experiments/jobs/job_folder.hpp"
+#include "server/experiments/pictures/flight_frame_cache.hpp"
 #include "server/runs/run_memory.hpp"
 
 namespace overfly::server::experiments {
@@ -26,6 +27,9 @@ struct WorkerOptions {
   std::string version;            ///< of this program: jobs of another one are not taken
   std::size_t jobs = 1;           ///< flights at the same time, if the memory suffices
   std::size_t most_flights = std::numeric_limits<std::size_t>::max();
+  /// Rendered pictures on this machine. The worker does not know whether another flight will need
+  /// its pictures, and keeps all.
+  FlightFrameCache frame_cache;
   double idle_s = 60.0;   ///< without a job the worker waits so long for the next one
   double beat_s = 5.0;    ///< how often it shows that it lives
   double silence_s = 60;  ///< it gives up if its folder cannot be written for so long

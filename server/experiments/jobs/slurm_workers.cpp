@@ -104,9 +104,10 @@ Status SlurmWorkers::load_name() {
 
 Status SlurmWorkers::write_script() const {
   // exec: the signals of Slurm reach the worker. An idle task gives its place to other users.
-  return write_whole(slurm_folder(options_) / "worker.sh",
-                     "#!/bin/sh\nexec " + quoted(options_.program.string()) + " sweep work " +
-                         quoted(options_.sweep.string()) + " --jobs 1 --idle-s 5\n");
+  std::string script = "#!/bin/sh\nexec " + quoted(options_.program.string()) + " sweep work " +
+                       quoted(options_.sweep.string()) + " --jobs 1 --idle-s 5";
+  for (const std::string& option : options_.worker_options) script += " " + quoted(option);
+  return write_whole(slurm_folder(options_) / "worker.sh", script + "\n");
 }
 
 std::optional<std::size_t> SlurmWorkers::tasks() {

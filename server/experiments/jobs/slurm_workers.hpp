@@ -20,6 +20,7 @@ struct SlurmOptions {
   std::filesystem::path program;  ///< this program, by the same path on all nodes
   std::size_t workers = 64;       ///< tasks at the same time at most
   std::vector<std::string> submit_options;  ///< further ones of sbatch, after ours
+  std::vector<std::string> worker_options;  ///< further ones of `overfly sweep work`
   double period_s = 5.0;                    ///< how often the queue is asked
   double patience_s = 60.0;                 ///< longest time between two attempts to submit
   std::function<void(const std::string&)> warn;

@@ -11,6 +11,7 @@
 #include "server/experiments/sweep_summary.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/files/whole_file.hpp"
+#include "server/record/run_folder.hpp"
 #include "server/record/run_lock.hpp"
 
 namespace overfly::server::experiments {
@@ -18,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+/// No sweep of a client can have this name.
+constexpr const char* kSharedFrameCache = ".frame_cache";
 
 Status write_summary(const Sweep& sweep, const FlownSweep& flown, const fs::path& folder) {
   constexpr auto kMode = evaluation::AlignmentMode::kInitScale;
@@ -169,6 +173,8 @@ Status SweepService::fly_into(const Flight& flight, const fs::path& folder) {
   options.program = options_.program;
   options.flight_options = flight.sweep.flight_options;
   options.jobs = flight.jobs;
+  options.frame_cache = {
+      fs::absolute(folder_ / kSharedFrameCache), options_.frame_cache_gib, utc_now_ns()};
   options.hold_memory = [this](const RunMemory& memory) { return runs_.hold_memory(memory); };
   options.cancel = &flight.cancel;
   options.warn = [&](const std::string& text) { log("warning", flight.name, text); };

@@ -21,7 +21,9 @@ namespace overfly::server::experiments {
 
 struct SweepServiceOptions {
   std::filesystem::path program = "/proc/self/exe";  ///< flies single scenarios
-  std::function<void()> begin_thread;                ///< called on the thread that flies
+  /// Size of the frame cache that all sweeps share, in their folder; 0 = none.
+  double frame_cache_gib = 0.0;
+  std::function<void()> begin_thread;  ///< called on the thread that flies
   std::function<void(const std::string& level, const std::string& text)> log;
 };
 

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -85,6 +87,35 @@ TEST_F(FrameCacheCommand, SweepsThatRunAtOnceShareAFolder) {
   EXPECT_TRUE(runs_of("f3") == runs_of("f4"));
 }
 
+TEST_F(FrameCacheCommand, AWorkerKeepsThePicturesOfItsFlights) {
+  RunningProgram sweep({"sweep", file(), "--out", path("f6"), "--executor", "folder"}, path(""));
+  while (sweep.running() && !fs::exists(path("f6/sweep.json"))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const Outcome worker = overfly_program({"sweep",
+                                          "work",
+                                          path("f6"),
+                                          "--jobs",
+                                          "1",
+                                          "--idle-s",
+                                          "30",
+                                          "--frame-cache",
+                                          path("node")});
+  EXPECT_EQ(worker.exit_code, 0) << worker.err;
+  EXPECT_EQ(sweep.wait(), 0) << sweep.err();
+  EXPECT_FALSE(fs::exists(path("f6/frame_cache")));
+  std::size_t read = 0;
+  for (const auto& run : fs::directory_iterator(path("f6/runs"))) {
+    const Json timings = Json::parse(read_text(run.path() / "timings.json"));
+    read += timings.at("frame_cache").at("read").get<std::size_t>();
+  }
+  EXPECT_GT(pictures_in("node"), 10U);
+  EXPECT_EQ(read, 2 * pictures_in("node")) << "two of three repeats read them";
+  ASSERT_EQ(overfly_program(FrameCacheCommand::sweep("f7", {"--frame-cache-gib", "0"})).exit_code,
+            0);
+  EXPECT_TRUE(runs_of("f6") == runs_of("f7"));
+}
+
 TEST_F(FrameCacheCommand, AKilledFlightLeavesACacheThatCanBeUsed) {
   const auto run = [](const std::string& out) {
     return std::vector<std::string>{
@@ -119,8 +150,11 @@ TEST_F(FrameCacheCommand, NamesOptionsBeyondTheirLimits) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {sweep("f5", {"--frame-cache-gib", "-1"}), "--frame-cache-gib"},
       {sweep("f5", {"--frame-cache-gib", "much"}), "--frame-cache-gib"},
-      {sweep("f5", {"--executor", "slurm", "--frame-cache", path("x")}),
-       "--frame-cache: needs --executor local"}};
+      {sweep("f5", {"--executor", "slurm", "--frame-cache-gib", "2"}),
+       "--frame-cache-gib: needs --frame-cache with Slurm"},
+      {{"sweep", file(), "--out", path("f5"), "--executor", "folder", "--frame-cache", path("x")},
+       "--frame-cache: is an option of the workers with --executor folder"},
+      {{"sweep", "work", path("f5"), "--frame-cache-gib", "2"}, "--frame-cache"}};
   for (const auto& [words, message] : cases) {
     const Outcome outcome = overfly_program(words);
     EXPECT_EQ(outcome.exit_code, 2) << message;

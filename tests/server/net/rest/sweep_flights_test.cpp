@@ -42,6 +42,23 @@ TEST_F(SweepRoutesTest, CancelsAndContinues) {
   EXPECT_EQ(lines("calls").size(), 4U);
 }
 
+TEST_F(SweepRoutesTest, FlightsOfAllSweepsShareAFrameCache) {
+  const fs::path cache = server_->folder() / "sweeps/.frame_cache";
+  fs::create_directories(cache);
+  for (const char* name : {"one", "two"}) {
+    ASSERT_EQ(start(name).status, 201);
+    (void)ended(name);
+  }
+  const auto calls = lines("calls");
+  ASSERT_EQ(calls.size(), 6U);
+  for (const std::string& call : calls) {
+    EXPECT_THAT(call, HasSubstr("--frame-cache " + cache.string() + " --frame-cache-gib 2.5 "));
+  }
+  const json list = ask(server_->port(), "GET", kSweepRoute).json();
+  EXPECT_EQ(list.at("sweeps").size(), 2U) << "the cache is no sweep";
+  EXPECT_EQ(start(".frame_cache").status, 400);
+}
+
 TEST_F(SweepRoutesTest, ExtendsASweepWithAChangedDocument) {
   ASSERT_EQ(start("seeds").status, 201);
   (void)ended("seeds");

@@ -29,6 +29,7 @@ class SweepRoutesTest : public ::testing::Test {
   SweepRoutesTest() {
     net::ServerOptions options;
     options.program = program();
+    options.frame_cache_gib = 2.5;
     server_ = std::make_unique<TestServer>(options);
     const std::filesystem::path run = server_->folder() / "runs" / server_->fly("tiny");
     const std::string own = own_.path().string();
