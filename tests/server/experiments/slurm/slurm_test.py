@@ -20,14 +20,21 @@ import cluster
 LEASE_S = 10
 
 
-def sweep_file(folder: pathlib.Path, airspeeds: list[float], duration_s: float) -> pathlib.Path:
+NATIVE = {"name": "mine", "type": "feature"}
+SLOW = {"name": "mine", "type": "process",
+        "command": [sys.executable, str(pathlib.Path(__file__).parent / "slow_odometry.py")]}
+
+
+def sweep_file(folder: pathlib.Path, airspeeds: list[float], duration_s: float,
+               estimator: dict = NATIVE, **changes: float) -> pathlib.Path:
+    """A flight per airspeed, with the changed fields of the scenario."""
     scenario = pathlib.Path(__file__).parents[4] / "scenarios/course.json"
     file = folder / "sweep.json"
     file.write_text(json.dumps({
         "format_version": 1, "scenario": str(scenario),
-        "set": {"duration_s": duration_s, "camera.width_px": 320, "camera.height_px": 240},
+        "set": {"duration_s": duration_s, "camera.width_px": 320, "camera.height_px": 240, **changes},
         "axes": [{"path": "flight.course.airspeed_m_s", "values": airspeeds}],
-        "estimators": [{"name": "feature", "type": "feature"}],
+        "estimators": [estimator],
     }))
     return file
 
@@ -84,7 +91,7 @@ def flights(out: pathlib.Path) -> dict[str, bytes]:
         scenario = json.loads((out / "scenarios" / (result["run"][5:] + ".json")).read_text())
         speed = scenario["flight"]["course"]["airspeed_m_s"]
         assert speed == result["cell"]["flight.course.airspeed_m_s"], "a result has another cell's run"
-        found[cell] = (out / result["run"] / "estimates/feature.tum").read_bytes()
+        found[cell] = (out / result["run"] / "estimates/mine.tum").read_bytes()
     return found
 
 
@@ -98,12 +105,14 @@ def refusal(overfly: str, folder: pathlib.Path) -> None:
 
 
 def failures(overfly: str, folder: pathlib.Path, slurm: cluster.Cluster) -> None:
-    file = sweep_file(folder, [10 + 0.75 * i for i in range(22)], 24)
-    sweep = Sweep(overfly, file, folder / "by_slurm")
+    file = sweep_file(folder, [10 + 0.75 * i for i in range(22)], 16, SLOW, **{"camera.rate_hz": 1})
+    pictures = folder / "pictures_of_node"
+    sweep = Sweep(overfly, file, folder / "by_slurm", "--frame-cache", str(pictures))
     try:
         survive_failures(sweep, slurm)
     finally:
         sweep.kill()
+    assert list(pictures.rglob("*.frame")), "workers keep pictures"
     compare_with_local(overfly, file, folder, sweep, slurm)
 
 
@@ -156,7 +165,7 @@ def survive_failures(sweep: Sweep, slurm: cluster.Cluster) -> None:
 def compare_with_local(overfly: str, file: pathlib.Path, folder: pathlib.Path, sweep: Sweep,
                        slurm: cluster.Cluster) -> None:
     local = folder / "local"
-    subprocess.run([overfly, "sweep", str(file), "--out", str(local), "--jobs", "2", "--quiet"],
+    subprocess.run([overfly, "sweep", str(file), "--out", str(local), "--jobs", "6", "--quiet"],
                    check=True, stdout=subprocess.DEVNULL)
     by_slurm = flights(sweep.out)
     assert by_slurm == flights(local), "flights differ from those without Slurm"
