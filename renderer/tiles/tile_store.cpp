@@ -30,6 +30,8 @@ constexpr int kValidStep = 8;
 /// Maximum number of waiting requests of `find`; older ones are dropped and requested again if
 /// needed.
 constexpr std::size_t kMaxAsked = 256;
+/// Maximum number of waiting requests of `read_when_idle`; further ones are dropped.
+constexpr std::size_t kMaxSomeTime = 20'000;
 /// A thread's pause between two tiles read ahead, relative to the time spent on the last one.
 constexpr double kRestPerWork = 6.0;
 
@@ -101,6 +103,8 @@ TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
 /// The data protected by the lock, and the threads.
 struct TileStore::State {
   using Key = std::pair<TileId, PixelFormat>;
+  /// kNow: a frame is drawn without it; kSoon: by prefetch; kSomeTime: by read_when_idle.
+  enum class Need { kNow, kSoon, kSomeTime };
   using Pixels = std::shared_ptr<const TilePixels>;
   using Order = std::list<Key>;  // last used first
   struct Entry {
@@ -146,6 +150,7 @@ struct TileStore::State {
     entries.emplace(key, Entry{pixels, bytes, round, place.begin()});
     order.splice(order.begin(), place);
     held_bytes += bytes;
+    largest_bytes = std::max(largest_bytes, bytes);
     while (held_bytes > options.budget_bytes && !order.empty()) {
       const auto oldest = entries.find(order.back());
       held_bytes -= oldest->second.bytes;
@@ -163,12 +168,13 @@ struct TileStore::State {
   }
 
   /// A tile's pixels, read without the lock; out of memory is an ordinary error.
-  Result<Pixels> read(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
+  Result<Pixels> read(const Key& key, Need need, std::unique_lock<std::mutex>& lock) {
     try {
       const double before_s = thread_cpu_s();
       const Result<terrain::Tile> tile = tiles->tile(key.first);
-      if (!urgent) {
-        touch_heights(*tiles, key.first);
+      if (need != Need::kNow) {
+        // Where elevation cannot be read, only views of that place must fail.
+        if (need == Need::kSoon) touch_heights(*tiles, key.first);
         lock.lock();
         rest(thread_cpu_s() - before_s, lock);
         lock.unlock();
@@ -181,9 +187,9 @@ struct TileStore::State {
   }
 
   /// Reads a tile that this thread has put into `loading`; releases the lock meanwhile.
-  Result<Pixels> load(const Key& key, bool urgent, std::unique_lock<std::mutex>& lock) {
+  Result<Pixels> load(const Key& key, Need need, std::unique_lock<std::mutex>& lock) {
     lock.unlock();
-    const Result<Pixels> pixels = read(key, urgent, lock);
+    const Result<Pixels> pixels = read(key, need, lock);
     lock.lock();
     loading.erase(key);
     // If there is no memory to store it, it is read again when needed.
@@ -206,7 +212,7 @@ struct TileStore::State {
       --waiting;
     }
     ++counts.read_on_demand;
-    return load(key, true, lock);
+    return load(key, Need::kNow, lock);
   }
 
   void load_all(std::span<const TileId> ids, PixelFormat format) {
@@ -219,7 +225,7 @@ struct TileStore::State {
       const Key key{ids[i], format};
       if (entries.count(key) != 0 || !loading.insert(key).second) continue;
       ++counts.read_on_demand;
-      (void)load(key, true, lock);
+      (void)load(key, Need::kNow, lock);
     }
   }
 
@@ -257,23 +263,27 @@ struct TileStore::State {
 
   void read_when_idle(std::span<const TileId> ids, PixelFormat format) {
     const std::lock_guard lock(mutex);
-    for (const TileId& id : ids) some_time.push_back({id, format});
+    for (const TileId& id : ids) {
+      if (some_time.size() >= kMaxSomeTime) break;
+      some_time.push_back({id, format});
+    }
     work.notify_all();
   }
 
-  /// True if the next tile would evict another. @pre the lock is held
-  [[nodiscard]] bool no_room() const {
-    return !order.empty() && held_bytes + entries.at(order.back()).bytes > options.budget_bytes;
-  }
+  /// True if a tile as large as the largest so far would evict another. @pre the lock is held
+  [[nodiscard]] bool no_room() const { return held_bytes + largest_bytes > options.budget_bytes; }
 
   /// True if the tile to be evicted next is still needed. @pre the lock is held
   [[nodiscard]] bool full() const {
-    return no_room() && entries.at(order.back()).round + 1 >= round;
+    if (order.empty() || held_bytes + entries.at(order.back()).bytes <= options.budget_bytes) {
+      return false;
+    }
+    return entries.at(order.back()).round + 1 >= round;
   }
 
-  /// The next tile to read, put into `loading`; `urgent` if a frame is drawn without it. @pre the
+  /// The next tile to read, put into `loading`; with who needs it. @pre the
   /// lock is held
-  bool take_next(Key& key, bool& urgent) {
+  bool take_next(Key& key, Need& need) {
     const auto take_from = [&](std::deque<Key>& queue) {
       while (!queue.empty()) {
         key = queue.front();
@@ -282,10 +292,12 @@ struct TileStore::State {
       }
       return false;
     };
-    urgent = take_from(asked);
-    if (urgent) return true;
+    need = Need::kNow;
+    if (take_from(asked)) return true;
     if (!ahead.empty() && full()) ahead.clear();
+    need = Need::kSoon;
     if (take_from(ahead)) return true;
+    need = Need::kSomeTime;
     if (no_room()) some_time.clear();
     return take_from(some_time);
   }
@@ -298,8 +310,8 @@ struct TileStore::State {
 
   void fetch_next(std::unique_lock<std::mutex>& lock) {
     Key key;
-    bool urgent = false;
-    if (!take_next(key, urgent)) {
+    Need need = Need::kNow;
+    if (!take_next(key, need)) {
       loaded.notify_all();
       work.wait(lock);
       return;
@@ -307,11 +319,11 @@ struct TileStore::State {
     ++counts.read_ahead;
     const double before_s = thread_cpu_s();
     // An error is reported to the caller that gets the tile.
-    (void)load(key, urgent, lock);
+    (void)load(key, need, lock);
     const double spent_s = thread_cpu_s() - before_s;
     counts.ahead_cpu_s += spent_s;
     // Tiles read ahead are not needed for seconds.
-    if (!urgent) rest(spent_s, lock);
+    if (need != Need::kNow) rest(spent_s, lock);
   }
 
   std::shared_ptr<const terrain::TileSource> tiles;
@@ -322,6 +334,7 @@ struct TileStore::State {
   std::map<Key, Entry> entries;
   Order order;
   std::size_t held_bytes = 0;
+  std::size_t largest_bytes = 0;  // of a tile so far
   std::set<Key> loading;
   std::deque<Key> asked;      // requested by find
   std::deque<Key> ahead;      // requested by prefetch

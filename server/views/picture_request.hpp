@@ -124,6 +124,7 @@ struct Picture {
   bool grey = false;
   PictureCoding coding = PictureCoding::kJpeg;
   bool key = true;                   ///< does not need the picture before
+  bool preview = false;              ///< of a frame, rendered in half its size
   std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
   std::vector<SceneLabel> labels;    ///< of a scene
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;

@@ -24,15 +24,21 @@ void add_square(const terrain::TileSource& tiles,
                 double reach_m,
                 std::set<TileId>* ids) {
   const terrain::TileGrid& grid = tiles.grid();
-  const auto index = [&](double way_m) {
-    return static_cast<int>(std::floor(way_m / grid.tile_m(level)));
+  // A run's record may hold any number: what is not finite or beyond the imagery is left out.
+  if (!middle_map_m.allFinite() || !std::isfinite(reach_m)) return;
+  const auto index = [&](double way_m, int tiles_of_level_0) {
+    const double most = std::ldexp(tiles_of_level_0, -level);
+    return static_cast<int>(std::floor(std::clamp(way_m / grid.tile_m(level), -1.0, most)));
   };
   const double right_m = middle_map_m.x() - grid.left_x_m;
   const double down_m = grid.top_y_m - middle_map_m.y();
-  for (int row = index(down_m - reach_m); row <= index(down_m + reach_m); ++row) {
-    for (int col = index(right_m - reach_m); col <= index(right_m + reach_m); ++col) {
+  const int last_row = index(down_m + reach_m, grid.rows);
+  const int last_col = index(right_m + reach_m, grid.cols);
+  for (int row = index(down_m - reach_m, grid.rows); row <= last_row; ++row) {
+    for (int col = index(right_m - reach_m, grid.cols); col <= last_col; ++col) {
       const TileId id{level, col, row};
-      if (tiles.coverage(id) != terrain::TileCoverage::kNone) ids->insert(id);
+      if (ids->contains(id) || tiles.coverage(id) == terrain::TileCoverage::kNone) continue;
+      ids->insert(id);
       if (ids->size() >= kMostTiles) return;
     }
   }

@@ -282,6 +282,9 @@ void PictureStreams::ready(const PictureTicket& ticket,
     return;
   }
   stream->error_sent.clear();
+  const bool frame = kind_of(stream->request.name) == PictureRequest::Kind::kCamera;
+  // The whole frame was available: it need not follow.
+  if (frame && stream->preview && !picture->preview) stream->preview = stream->reduced = false;
   if (stream->still && !stream->preview) stream->drawing_ns = now_ns - stream->requested_ns;
   stream->slot.answered_with(picture->frame);
   stream->slot.sending();

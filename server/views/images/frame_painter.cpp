@@ -124,6 +124,7 @@ FramePainter::Painted FramePainter::previewed(const PictureRequest& request,
   const PinholeCamera& whole = frame.timeline->cameras()[frame.camera].model.pinhole();
   picture->full_width_px = whole.width_px;
   picture->full_height_px = whole.height_px;
+  picture->preview = true;
   return painted(std::move(picture));
 }
 

@@ -61,6 +61,7 @@ class PictureStreamsTest : public ::testing::Test {
     picture.height_px = 48;
     picture.coding = coding;
     picture.key = key;
+    picture.preview = preview_;
     picture.bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes_, std::uint8_t{1});
     streams_.ready(ticket, picture, &port_, now_ns_ + drawing_ns_);
     streams_.sent(ticket);
@@ -96,6 +97,7 @@ class PictureStreamsTest : public ::testing::Test {
   std::int64_t now_ns_ = 1'000'000'000;
   std::size_t bytes_ = 3;        ///< of a picture
   std::int64_t drawing_ns_ = 0;  ///< until a picture is drawn
+  bool preview_ = false;         ///< a picture is drawn as one
 };
 
 TEST_F(PictureStreamsTest, AsksForVideoOnceAPictureIsThereAndMoves) {
@@ -232,10 +234,28 @@ TEST_F(PictureStreamsTest, PreviewsAFrameThatTakesLongAfterAJump) {
   const auto preview = next(false);
   EXPECT_TRUE(preview->preview);
   EXPECT_EQ(preview->max_width_px, first->max_width_px);
+  preview_ = true;
+  send();
+  show_all();
+  EXPECT_FALSE(next(false));
+  now_ns_ += kPreviewStandsNs;
+  const auto whole = next(false);
+  ASSERT_TRUE(whole);
+  EXPECT_FALSE(whole->preview);
+}
+
+TEST_F(PictureStreamsTest, SendsAFrameOnceThatCameWholeInsteadOfItsPreview) {
+  subscribe(false, true);
+  ASSERT_TRUE(next(false));
+  drawing_ns_ = kLongNs;
+  send();
+  show_all();
+  streams_.show_after_jump();
+  ASSERT_TRUE(next(false)->preview);
   send();
   show_all();
   now_ns_ += kPreviewStandsNs;
-  EXPECT_FALSE(next(false)->preview);
+  EXPECT_FALSE(next(false));
 }
 
 TEST_F(PictureStreamsTest, BeginsAnewWhenTheClientLostAPicture) {

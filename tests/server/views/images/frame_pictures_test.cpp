@@ -107,6 +107,7 @@ TEST_F(FramePictures, APreviewShowsTheFrameInHalfItsSize) {
   ASSERT_TRUE(preview.ok()) << preview.error().message;
   EXPECT_EQ(preview->frame, 8);
   EXPECT_EQ(preview->width_px, 80);
+  EXPECT_TRUE(preview->preview);
   EXPECT_EQ(preview->full_width_px, 160);
   EXPECT_EQ(preview->full_height_px, 120);
   request.preview = false;
