@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,9 @@ struct Atmosphere {
   std::array<float, 3> airlight_rgb{0.72F, 0.80F, 0.88F};
 };
 
+/// A picture that is drawn once every tile at the required detail has been read.
+constexpr std::int64_t kForAllTiles = std::numeric_limits<std::int64_t>::max();
+
 /// A request for an image of the aircraft's camera.
 struct CameraRequest {
   CameraModel camera;
@@ -63,9 +67,9 @@ struct CameraRequest {
   Atmosphere atmosphere;
   /// Of the camera; used to read tiles ahead, does not change the image.
   Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
-  /// True: the image waits for every tile at the required detail. False: a tile that is not
-  /// available in time is replaced by a coarser one, and counted.
-  bool wait_for_tiles = true;
+  /// Time to read tiles that are not in memory (of each instant, with motion blur). A tile that is
+  /// not read in time is replaced by a coarser one, counted, and read for later images. 0 = none.
+  std::int64_t tile_wait_ns = kForAllTiles;
 
   /// A camera at rest.
   static CameraRequest still(const CameraModel& camera,
@@ -99,7 +103,7 @@ struct CameraFrame {
   double void_fraction = 0.0;
   /// Depth of the ground along the optical axis [m]; empty if the axis points to the sky.
   std::optional<double> axis_depth_m;
-  /// Tiles that were late and replaced by coarser ones; 0 if the request waited.
+  /// Tiles that were late and replaced by coarser ones; 0 if the request waited for all.
   int late_tiles = 0;
 };
 
@@ -116,6 +120,8 @@ struct SceneView {
   int height_px = 720;
   double fov_y_rad = 0.9;
   Pose T_world_camera;  ///< optical axes, as everywhere
+  /// As in CameraRequest.
+  std::int64_t tile_wait_ns = kForAllTiles;
 };
 
 /// Contents of a scene view in addition to ground and sky.
@@ -220,7 +226,8 @@ struct RendererOptions {
   /// "software". If it does not work, the software renderer is used and RendererInfo reports that.
   std::string device;
   CameraBackend camera_backend = CameraBackend::kAuto;  ///< of create_renderer()
-  int threads = 0;  ///< of the ray-caster; 0 = one per core, at most 8. Does not change the image
+  int threads =
+      0;  ///< that share a picture; 0 = one per core, at most 8. Does not change the image
 };
 
 /// The renderer for this machine: the camera by the backend of the options, scene views by OpenGL.

@@ -12,7 +12,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/camera/image.hpp"
 #include "core/earth/geodesy.hpp"
@@ -83,6 +85,17 @@ class TileSource : public HeightQuery {
                                                               double y_map_m,
                                                               double /*spacing_m*/) const {
     return world_from_map(x_map_m, y_map_m);
+  }
+  /// The same at several places, with equal results: places far outside the imagery take less time
+  /// together.
+  [[nodiscard]] virtual std::vector<Eigen::Vector3d> coarse_world_at(
+      std::span<const Eigen::Vector2d> places_map_m, double spacing_m) const {
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(places_map_m.size());
+    for (const Eigen::Vector2d& place : places_map_m) {
+      points.push_back(coarse_world_from_map(place.x(), place.y(), spacing_m));
+    }
+    return points;
   }
   /// The map position of the ground on the vertical world line through (east, north) [m].
   [[nodiscard]] virtual Eigen::Vector2d map_from_world(double east_m, double north_m) const = 0;

@@ -25,7 +25,7 @@ bool is_plain(const CameraRequest& request) {
 GroundLook look_of(const CameraRequest& request) {
   GroundLook look;
   look.format = request.format;
-  look.wait_for_tiles = request.wait_for_tiles;
+  look.tile_wait_ns = request.tile_wait_ns;
   look.extinction_per_m = request.atmosphere.extinction_per_m;
   look.airlight = light_in(request.format, request.atmosphere.airlight_rgb);
   return look;

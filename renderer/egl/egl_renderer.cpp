@@ -12,6 +12,7 @@
 #include "renderer/egl/tile_textures.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/request_check.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace overfly::renderer {
 
@@ -25,10 +26,12 @@ class EglRenderer final : public Renderer {
               const std::shared_ptr<TileStore>& store,
               const std::shared_ptr<GroundPatchStore>& patches,
               std::size_t texture_bytes,
-              std::size_t in_flight)
+              std::size_t in_flight,
+              int threads)
       : context_(std::move(context)),
         tiles_(store->tiles()),
-        patches_(patches),
+        workers_(threads),
+        patches_(patches, &workers_),
         textures_(store, texture_bytes),
         ground_(std::move(ground)),
         scene_(std::move(scene)),
@@ -88,8 +91,13 @@ class EglRenderer final : public Renderer {
     const Result<PinholeCamera> camera = camera_of(view);
     if (!camera.ok()) return camera.error();
     if (Status s = context_->make_current(); !s) return s.error();
-    return scene_.draw(
-        content, View::from(*camera, view.T_world_camera), tiles_, patches_, ground_, textures_);
+    return scene_.draw(content,
+                       View::from(*camera, view.T_world_camera),
+                       tiles_,
+                       patches_,
+                       ground_,
+                       textures_,
+                       view.tile_wait_ns);
   }
 
   [[nodiscard]] RendererInfo info() const override {
@@ -109,6 +117,7 @@ class EglRenderer final : public Renderer {
 
   std::unique_ptr<EglContext> context_;  // declared first, so that it is destroyed last
   const terrain::TileSource& tiles_;     // of the store in textures_
+  WorkerPool workers_;
   GroundPatches patches_;
   TileTextures textures_;
   GroundPass ground_;
@@ -139,7 +148,8 @@ Result<std::unique_ptr<EglRenderer>> create(std::shared_ptr<const terrain::TileS
                                        std::move(store),
                                        std::make_shared<GroundPatchStore>(std::move(tiles)),
                                        options.tile_cache_bytes,
-                                       static_cast<std::size_t>(in_flight));
+                                       static_cast<std::size_t>(in_flight),
+                                       options.threads);
 }
 
 }  // namespace

@@ -155,12 +155,12 @@ Status GroundPass::find_textures(const GroundMesh& mesh,
                                  TileTextures& textures,
                                  const GroundLook& look) {
   tiles_.clear();
-  if (look.wait_for_tiles) {
+  if (look.tile_wait_ns > 0) {
     std::vector<terrain::TileId> ids;
     for (const GroundBatch& batch : mesh.batches) {
       if (batch.textured) ids.push_back(batch.texture);
     }
-    textures.load(ids, look.format);
+    textures.load(ids, look.format, look.tile_wait_ns);
   }
   for (const GroundBatch& batch : mesh.batches) {
     if (!batch.textured) {
@@ -168,7 +168,7 @@ Status GroundPass::find_textures(const GroundMesh& mesh,
       continue;
     }
     const Result<DrawnTile> tile =
-        textures.texture(batch.texture, look.format, look.wait_for_tiles);
+        textures.texture(batch.texture, look.format, look.tile_wait_ns == kForAllTiles);
     if (!tile.ok()) return tile.error();
     tiles_.push_back(*tile);
   }

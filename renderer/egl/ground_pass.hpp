@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/result.hpp"
@@ -36,7 +37,7 @@ struct GroundLook {
   };
   Output output = Output::kColour;
   PixelFormat format = PixelFormat::kGrey8;  ///< of the textures; ignored for depth
-  bool wait_for_tiles = true;
+  std::int64_t tile_wait_ns = kForAllTiles;  ///< see CameraRequest
   /// For kColour: the air between the camera and the ground, with its light in the format's
   /// encoding.
   double extinction_per_m = 0.0;

@@ -148,7 +148,8 @@ Result<Image> ScenePass::draw(const SceneContent& content,
                               const terrain::TileSource& tiles,
                               GroundPatches& patches,
                               GroundPass& ground,
-                              TileTextures& textures) {
+                              TileTextures& textures,
+                              std::int64_t tile_wait_ns) {
   SceneTriangles solid(view), translucent(view);
   for (std::size_t i = 0; i < content.ribbons.size(); ++i) {
     // Where ribbons coincide, the later one is visible.
@@ -185,6 +186,7 @@ Result<Image> ScenePass::draw(const SceneContent& content,
   GroundLook look;
   look.output = GroundLook::Output::kHazyColour;
   look.format = PixelFormat::kRgb8;
+  look.tile_wait_ns = tile_wait_ns;
   if (content.projection) {
     projection_.prepare(*content.projection, view);
     look.projection = &projection_;

@@ -1,6 +1,7 @@
 // Draws a scene view: sky, hazy ground, and the objects above it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "core/camera/image.hpp"
@@ -22,7 +23,8 @@ class ScenePass {
                      const terrain::TileSource& tiles,
                      GroundPatches& patches,
                      GroundPass& ground,
-                     TileTextures& textures);
+                     TileTextures& textures,
+                     std::int64_t tile_wait_ns);
 
  private:
   ScenePass(GlProgram sky, GlProgram overlay);

@@ -48,12 +48,12 @@ TileTextures::Entry& TileTextures::upload(const Key& key, const TilePixels& pixe
   return entries_.front();
 }
 
-void TileTextures::load(const std::vector<TileId>& ids, PixelFormat format) {
+void TileTextures::load(const std::vector<TileId>& ids, PixelFormat format, std::int64_t limit_ns) {
   std::vector<TileId> missing;
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(missing), [&](const TileId& id) {
     return by_key_.count({id, format}) == 0;
   });
-  if (missing.size() > 1) store_->load(missing, format);
+  if (!missing.empty()) store_->load(missing, format, limit_ns);
 }
 
 Result<DrawnTile> TileTextures::texture(const TileId& id, PixelFormat format, bool wait) {

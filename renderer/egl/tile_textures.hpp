@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -31,8 +32,9 @@ class TileTextures {
  public:
   TileTextures(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
-  /// Reads those that are not in memory, several at once. Errors are reported by texture().
-  void load(const std::vector<terrain::TileId>& ids, PixelFormat format);
+  /// Reads those that are not in memory, several at once, as TileStore::load. Errors are reported
+  /// by texture().
+  void load(const std::vector<terrain::TileId>& ids, PixelFormat format, std::int64_t limit_ns);
   /// The texture of a tile. Valid until end_view().
   /// @param wait  true: reads the tile if needed; false: uses the nearest available coarser tile
   /// Errors: kIo if a tile cannot be read.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "renderer/ground/ground_reach.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace overfly::renderer {
 
@@ -24,18 +26,18 @@ std::vector<Eigen::Vector3d> sample_lattice(const terrain::TileSource& tiles,
   const terrain::TileGrid& grid = tiles.grid();
   const double size_m = std::ldexp(terrain::kTileTexels * grid.texel_m, id.level);
   const double step_m = size_m / (points_a_side - 1);
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(static_cast<std::size_t>(points_a_side) * points_a_side);
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(static_cast<std::size_t>(points_a_side) * points_a_side);
   for (int row = 0; row < points_a_side; ++row) {
     // Patches that share a point must compute identical coordinates for it, so they are computed
     // from its integer number of steps, which is exact at every level.
     const double y_m = grid.top_y_m - (id.row * (points_a_side - 1.0) + row) * step_m;
     for (int column = 0; column < points_a_side; ++column) {
       const double x_m = grid.left_x_m + (id.col * (points_a_side - 1.0) + column) * step_m;
-      points.push_back(tiles.coarse_world_from_map(x_m, y_m, spacing_m));
+      places.emplace_back(x_m, y_m);
     }
   }
-  return points;
+  return tiles.coarse_world_at(places, spacing_m);
 }
 
 constexpr int kFinePoints = 2 * kPatchCells + 1;
@@ -177,13 +179,29 @@ void GroundPatchStore::sample(GroundPatch& patch) {
       bytes += errors.size() * sizeof(float);
     }
     add_bytes(patch.id, bytes);
+    patch.is_sampled = true;
   });
 }
 
 GroundPatches::GroundPatches(std::shared_ptr<const terrain::TileSource> tiles)
     : GroundPatches(std::make_shared<GroundPatchStore>(std::move(tiles))) {}
 
-GroundPatches::GroundPatches(std::shared_ptr<GroundPatchStore> store) : store_(std::move(store)) {}
+GroundPatches::GroundPatches(std::shared_ptr<GroundPatchStore> store, WorkerPool* workers)
+    : store_(std::move(store)), workers_(workers) {}
+
+void GroundPatches::sample(std::span<GroundPatch* const> patches) const {
+  std::vector<GroundPatch*> fresh;
+  std::copy_if(patches.begin(), patches.end(), std::back_inserter(fresh), [](const auto* patch) {
+    return !patch->is_sampled;
+  });
+  const auto sample_one = [&](int i) { store_->sample(*fresh[static_cast<std::size_t>(i)]); };
+  const int count = static_cast<int>(fresh.size());
+  if (workers_ != nullptr) {
+    workers_->run(count, sample_one);
+  } else {
+    for (int i = 0; i < count; ++i) sample_one(i);
+  }
+}
 
 GroundPatch& GroundPatches::outline(const TileId& id) {
   in_use_.push_back(store_->outline(id));

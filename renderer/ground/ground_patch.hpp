@@ -7,16 +7,20 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "terrain/tile_source.hpp"
 
 namespace overfly::renderer {
+
+class WorkerPool;
 
 inline constexpr int kFinestPatchLevel = -6;
 inline constexpr int kLog2PatchCells = 5;
@@ -39,6 +43,7 @@ struct GroundPatch {
   std::array<std::vector<float>, kLog2PatchCells + 1> square_error_m;
 
   std::once_flag outlined, sampled;
+  std::atomic<bool> is_sampled = false;
 
   [[nodiscard]] const Eigen::Vector3d& point(int column, int row) const {
     return points[static_cast<std::size_t>(row) * (kPatchCells + 1) + column];
@@ -95,11 +100,13 @@ class GroundPatchStore {
 class GroundPatches {
  public:
   explicit GroundPatches(std::shared_ptr<const terrain::TileSource> tiles);
-  explicit GroundPatches(std::shared_ptr<GroundPatchStore> store);
+  /// @param workers  sample new patches together; null: the calling thread alone
+  explicit GroundPatches(std::shared_ptr<GroundPatchStore> store, WorkerPool* workers = nullptr);
 
   /// The patch with its outline. References stay valid until end_view().
   GroundPatch& outline(const terrain::TileId& id);
-  void sample(GroundPatch& patch) const { store_->sample(patch); }
+  /// Samples those that are not sampled yet.
+  void sample(std::span<GroundPatch* const> patches) const;
   void end_view() { in_use_.clear(); }
 
   [[nodiscard]] const terrain::TileSource& tiles() const { return store_->tiles(); }
@@ -110,6 +117,7 @@ class GroundPatches {
 
  private:
   std::shared_ptr<GroundPatchStore> store_;
+  WorkerPool* workers_;
   std::vector<std::shared_ptr<GroundPatch>> in_use_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "renderer/ground/ground_reach.hpp"
 
@@ -54,10 +55,16 @@ class Selector {
     for (int dr = -1; dr <= 1; ++dr) {
       for (int dc = -1; dc <= 1; ++dc) visit({level, column + dc, row + dr});
     }
+    while (!candidates_.empty()) keep_or_divide(std::exchange(candidates_, {}));
     return std::move(leaves_);
   }
 
  private:
+  struct Candidate {
+    GroundPatch* patch = nullptr;
+    GroundLeaf leaf;
+  };
+
   /// Distance to the farthest visible ground: the camera's horizon plus that of the highest ground.
   [[nodiscard]] double reach() const {
     const Eigen::Vector2d range_m = patches_.tiles().height_range_m();
@@ -86,24 +93,29 @@ class Selector {
     }
     appearance.leaf.textured = patch.coverage != TileCoverage::kNone;
     appearance.leaf.texture = GroundPatches::tile_of(id);
-    emit(patch, appearance.leaf);
+    candidates_.push_back({&patch, appearance.leaf});
   }
 
-  /// Keeps a patch, or divides it further if its relief is finer than its cells.
-  void emit(GroundPatch& patch, const GroundLeaf& leaf) {
-    patches_.sample(patch);
-    if (!leaf.textured || patch.id.level <= kFinestPatchLevel || !has_finer_relief(leaf)) {
-      leaves_.push_back(leaf);
-      return;
+  /// Keeps patches, or divides those further whose relief is finer than their cells.
+  void keep_or_divide(const std::vector<Candidate>& candidates) {
+    std::vector<GroundPatch*> patches;
+    patches.reserve(candidates.size());
+    for (const Candidate& candidate : candidates) patches.push_back(candidate.patch);
+    patches_.sample(patches);
+    for (const auto& [patch, leaf] : candidates) {
+      if (!leaf.textured || patch->id.level <= kFinestPatchLevel || !has_finer_relief(leaf)) {
+        leaves_.push_back(leaf);
+        continue;
+      }
+      divide(*patch, [&](const TileId& id) {
+        GroundPatch& child = patches_.outline(id);
+        if (outside(child.bounds)) return;
+        GroundLeaf child_leaf = measure(child).leaf;
+        child_leaf.texture = leaf.texture;
+        child_leaf.textured = leaf.textured;
+        candidates_.push_back({&child, child_leaf});
+      });
     }
-    divide(patch, [&](const TileId& id) {
-      GroundPatch& child = patches_.outline(id);
-      if (outside(child.bounds)) return;
-      GroundLeaf child_leaf = measure(child).leaf;
-      child_leaf.texture = leaf.texture;
-      child_leaf.textured = leaf.textured;
-      emit(child, child_leaf);
-    });
   }
 
   /// True if the ground between the points of a patch visibly deviates from its finest mesh.
@@ -160,6 +172,7 @@ class Selector {
   const OnDivided& on_divided_;
   std::array<Eigen::Vector3d, 4> side_normals_;
   Eigen::Vector3d up_camera_;
+  std::vector<Candidate> candidates_;  // seen, to be sampled
   std::vector<GroundLeaf> leaves_;
   mutable std::array<Eigen::Vector3d, 25> outline_camera_;
 };

@@ -58,7 +58,7 @@ class Track {
                              std::llround(t_s * 1e9),
                              PixelFormat::kGrey8);
     request.velocity_world_m_s = position(t_s + 1.0) - p;
-    request.wait_for_tiles = options_.wait_for_tiles;
+    request.tile_wait_ns = options_.wait_for_tiles ? kForAllTiles : 0;
     return request;
   }
 

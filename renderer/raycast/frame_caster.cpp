@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <thread>
 
 #include "renderer/camera/image_motion.hpp"
 #include "renderer/raycast/frame_measure.hpp"
@@ -23,11 +22,6 @@ constexpr double kAheadS = 1.5;         // flight time ahead for which tiles are
 constexpr double kHeightsAheadS = 0.75;
 /// Margin on each side of the path, in tiles, so that a roll finds its tiles as well.
 constexpr double kAsideTiles = 0.25;
-
-int chosen_threads(int wanted) {
-  if (wanted > 0) return wanted;
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
-}
 
 std::shared_ptr<TileStore> chosen_store(const std::shared_ptr<const terrain::TileSource>& tiles,
                                         const RaycastOptions& options) {
@@ -58,7 +52,7 @@ void paint_depth(const Band& band, DepthImage& image) {
 FrameCaster::FrameCaster(std::shared_ptr<const terrain::TileSource> tiles,
                          const RaycastOptions& options)
     : tiles_(std::move(tiles)),
-      pool_(chosen_threads(options.threads)),
+      pool_(options.threads),
       kernel_(options.kernel != nullptr ? options.kernel : best_sample_kernel()),
       field_(tiles_),
       texels_(chosen_store(tiles_, options), options.tile_cache_bytes) {}
@@ -106,12 +100,13 @@ void FrameCaster::load_tiles(const Frame& frame) {
           return !frame.found.contains(id) && tiles_->coverage(id) != terrain::TileCoverage::kNone;
         });
   }
-  texels_.load({ids.begin(), ids.end()}, frame.request.format);
+  texels_.load({ids.begin(), ids.end()}, frame.request.format, frame.request.tile_wait_ns);
 }
 
 Status FrameCaster::find_tiles(Frame& frame) {
   const PixelFormat format = frame.request.format;
-  if (frame.request.wait_for_tiles) load_tiles(frame);
+  const bool for_all = frame.request.tile_wait_ns == kForAllTiles;
+  if (frame.request.tile_wait_ns > 0) load_tiles(frame);
   band_tiles_.resize(bands_.size());
   for (std::size_t i = 0; i < bands_.size(); ++i) {
     band_tiles_[i].clear();
@@ -120,7 +115,7 @@ Status FrameCaster::find_tiles(Frame& frame) {
       if (known == frame.found.end()) {
         Result<FoundTile> found = FoundTile{nullptr, id};
         if (tiles_->coverage(id) != terrain::TileCoverage::kNone) {
-          found = frame.request.wait_for_tiles ? texels_.get(id, format) : texels_.find(id, format);
+          found = for_all ? texels_.get(id, format) : texels_.find(id, format);
         }
         if (!found.ok()) return found.error();
         if (found->id != id) frame.late.insert(id);

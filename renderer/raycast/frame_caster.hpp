@@ -11,7 +11,7 @@
 #include "renderer/raycast/paint/painter.hpp"
 #include "renderer/raycast/paint/texel_tiles.hpp"
 #include "renderer/raycast/raycast_options.hpp"
-#include "renderer/raycast/worker_pool.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace overfly::renderer::raycast {
 

@@ -6,7 +6,7 @@
 #include "renderer/camera/frame_statistics.hpp"
 #include "renderer/raycast/ground/ground_caster.hpp"
 #include "renderer/raycast/ground/shutter.hpp"
-#include "renderer/raycast/worker_pool.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace overfly::renderer::raycast {
 

@@ -215,18 +215,30 @@ struct TileStore::State {
     return load(key, Need::kNow, lock);
   }
 
-  void load_all(std::span<const TileId> ids, PixelFormat format) {
-    if (threads.empty()) return;
+  void load_all(std::span<const TileId> ids, PixelFormat format, std::int64_t limit_ns) {
+    // Without threads, or for a single tile, `get` is as fast.
+    if (limit_ns == kForAllTiles && (threads.empty() || ids.size() < 2)) return;
+    using Clock = std::chrono::steady_clock;
+    const bool limited = limit_ns != kForAllTiles;
+    const auto end = Clock::now() + std::chrono::nanoseconds(limited ? limit_ns : 0);
     std::unique_lock lock(mutex);
     for (const TileId& id : ids) ask({id, format});
     work.notify_all();
     // The threads begin with the first one, this thread with the last one.
     for (std::size_t i = ids.size(); i-- > 0;) {
+      if (limited && Clock::now() >= end) return;
       const Key key{ids[i], format};
       if (entries.count(key) != 0 || !loading.insert(key).second) continue;
       ++counts.read_on_demand;
       (void)load(key, Need::kNow, lock);
     }
+    // `get` waits for a tile that another thread is still reading, `find` does not.
+    if (!limited) return;
+    loaded.wait_until(lock, end, [&] {
+      return std::none_of(ids.begin(), ids.end(), [&](const TileId& id) {
+        return loading.contains({id, format});
+      });
+    });
   }
 
   /// Requests a tile from the threads, unless it is here or on its way. @pre the lock is held
@@ -356,8 +368,8 @@ Result<std::shared_ptr<const TilePixels>> TileStore::get(const TileId& id, Pixel
   return state_->get({id, format});
 }
 
-void TileStore::load(std::span<const TileId> ids, PixelFormat format) {
-  state_->load_all(ids, format);
+void TileStore::load(std::span<const TileId> ids, PixelFormat format, std::int64_t limit_ns) {
+  state_->load_all(ids, format, limit_ns);
 }
 
 std::shared_ptr<const TilePixels> TileStore::find(const TileId& id, PixelFormat format) {

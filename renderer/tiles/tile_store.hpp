@@ -55,8 +55,12 @@ class TileStore {
   [[nodiscard]] Result<std::shared_ptr<const TilePixels>> get(const terrain::TileId& id,
                                                               PixelFormat format);
   /// Reads the tiles that are not in memory, on the store's threads and the caller's at once: to be
-  /// called before `get` is called for each of many. An error is reported by `get`.
-  void load(std::span<const terrain::TileId> ids, PixelFormat format);
+  /// called before `get` or `find` is called for each of many. An error is reported by `get`.
+  /// @param limit_ns  no tile is begun later on the caller's thread; the store's threads go on.
+  ///     Limited, it also waits so long for tiles that other threads are reading
+  void load(std::span<const terrain::TileId> ids,
+            PixelFormat format,
+            std::int64_t limit_ns = kForAllTiles);
   /// The tile if it is in memory; else null, and the tile is requested (without threads: read).
   [[nodiscard]] std::shared_ptr<const TilePixels> find(const terrain::TileId& id,
                                                        PixelFormat format);

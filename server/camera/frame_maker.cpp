@@ -212,7 +212,7 @@ Result<CameraShot> FrameMaker::take(std::size_t camera,
   CameraUnit& unit = *cameras_[camera];
   Result<renderer::CameraRequest> request = unit.request(states, t_ns);
   if (!request) return request.error();
-  request->wait_for_tiles = options_.wait_for_tiles;
+  request->tile_wait_ns = options_.wait_for_tiles ? renderer::kForAllTiles : 0;
   shot.request = std::move(*request);
   Result<renderer::CameraFrame> drawn =
       stages_.measure("render", [&] { return renderer_->render_camera(shot.request); });

@@ -38,7 +38,7 @@ struct FrameMakerOptions {
   /// Called with one line before each slow step of the opening.
   std::function<void(const std::string&)> notice;
   StageTimer* stages = nullptr;  ///< measures the time of each stage
-  bool wait_for_tiles = true;    ///< see renderer::CameraRequest
+  bool wait_for_tiles = true;    ///< else late ones are replaced by coarser ones
   /// Opens the flight over the opened world; create_truth if empty.
   std::function<Result<std::unique_ptr<TruthSource>>(const terrain::World&)> open_truth;
   TruthSampleFile* truth_samples = nullptr;  ///< where the truth is recorded; may be null

@@ -8,7 +8,7 @@ namespace overfly::server {
 
 Result<renderer::CameraFrame> CachedRenderer::render_camera(
     const renderer::CameraRequest& request) {
-  if (!request.wait_for_tiles) return renderer_->render_camera(request);
+  if (request.tile_wait_ns != renderer::kForAllTiles) return renderer_->render_camera(request);
   const std::string key = frame_key(context_, request);
   if (std::optional<renderer::CameraFrame> known = cache_.find(key, request)) {
     return std::move(*known);

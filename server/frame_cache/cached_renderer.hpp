@@ -10,7 +10,7 @@
 namespace overfly::server {
 
 /// Pictures that the cache lacks are drawn by the other renderer and added. All other views, and
-/// pictures that need not be complete (CameraRequest::wait_for_tiles), are always drawn.
+/// pictures that need not be complete (CameraRequest::tile_wait_ns), are always drawn.
 class CachedRenderer final : public renderer::Renderer {
  public:
   /// @param context  as picture_context

@@ -93,9 +93,9 @@ std::string frame_key(const std::string& context, const renderer::CameraRequest&
                quality,
                atmosphere,
                velocity_world_m_s,
-               wait_for_tiles] = request;
+               tile_wait_ns] = request;
   (void)velocity_world_m_s;  // changes what is read ahead, not the image
-  (void)wait_for_tiles;      // only complete pictures have keys
+  (void)tile_wait_ns;        // only complete pictures have keys
   KeyHash hash;
   hash.add(context);
   hash.add(camera);

@@ -71,6 +71,10 @@ struct VideoChain {
   bool key = false;            ///< the next one must be a key picture
 };
 
+/// Time that a preview has for ground that is not in memory: what comes later is drawn from coarser
+/// imagery.
+constexpr std::int64_t kPreviewTileWaitNs = 20'000'000;
+
 struct PictureRequest {
   std::string run_id;
   enum class Kind { kCamera, kDebug, kScene, kDepth, kError } kind = Kind::kCamera;
@@ -85,7 +89,8 @@ struct PictureRequest {
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
   int max_width_px = 1280;               ///< all but scenes are halved until they fit
-  /// kCamera: an image that has to be rendered is rendered in half its size, to be there sooner.
+  /// kCamera, kScene: to be there sooner, a picture that has to be rendered is limited to
+  /// kPreviewTileWaitNs, and a camera's one to half its size.
   bool preview = false;
   /// The way to the client is slow: a recorded JPEG is encoded again, not passed on.
   bool sparing = false;

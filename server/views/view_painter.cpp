@@ -88,7 +88,8 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
   const terrain::TileSource& tiles = *(*view)->world->tiles;
-  const auto scene = scene_view(settings, row.T_world_body, ribbons.centre(), tiles);
+  auto scene = scene_view(settings, row.T_world_body, ribbons.centre(), tiles);
+  if (request.preview) scene.tile_wait_ns = kPreviewTileWaitNs;
   renderer::SceneContent content;
   std::vector<PlacedLabel> places;
   const bool onboard = settings.mode == SceneMode::kOnboard;

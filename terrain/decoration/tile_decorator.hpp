@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "terrain/tile_source.hpp"
 
@@ -26,6 +28,10 @@ class TileDecorator : public TileSource {
                                                       double y_map_m,
                                                       double spacing_m) const override {
     return base_->coarse_world_from_map(x_map_m, y_map_m, spacing_m);
+  }
+  [[nodiscard]] std::vector<Eigen::Vector3d> coarse_world_at(
+      std::span<const Eigen::Vector2d> places_map_m, double spacing_m) const override {
+    return base_->coarse_world_at(places_map_m, spacing_m);
   }
   [[nodiscard]] Eigen::Vector2d map_from_world(double east_m, double north_m) const override {
     return base_->map_from_world(east_m, north_m);

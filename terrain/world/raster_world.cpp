@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 
 namespace overfly::terrain {
@@ -57,20 +58,54 @@ MapGeodesy::Ground::Value MapGeodesy::ground(double x_map_m, double y_map_m) con
   if (known.contains(x_map_m, y_map_m)) return (*ground_)(x_map_m, y_map_m);
   Eigen::Matrix2Xd point(2, 1);
   point << x_map_m, y_map_m;
-  if (plane_.geodetic_from_map(point)) {
-    Ground::Value value;
-    const Eigen::Vector3d foot = frame_->world_from_geodetic({point(1, 0), point(0, 0), 0.0});
-    value << foot, frame_->world_from_geodetic({point(1, 0), point(0, 0), 1.0}) - foot;
-    return value;
-  }
+  if (plane_.geodetic_from_map(point)) return ground_from_geodetic(point(1, 0), point(0, 0));
   // Beyond the projection's range there is no correct answer: the nearest known place is used.
   return (*ground_)(std::clamp(x_map_m, known.x_min, known.x_max),
                     std::clamp(y_map_m, known.y_min, known.y_max));
 }
 
+MapGeodesy::Ground::Value MapGeodesy::ground_from_geodetic(double lat_rad, double lon_rad) const {
+  Ground::Value value;
+  const Eigen::Vector3d foot = frame_->world_from_geodetic({lat_rad, lon_rad, 0.0});
+  value << foot, frame_->world_from_geodetic({lat_rad, lon_rad, 1.0}) - foot;
+  return value;
+}
+
 Eigen::Vector3d MapGeodesy::world(double x_map_m, double y_map_m, double height_m) const {
   const Ground::Value value = ground(x_map_m, y_map_m);
   return value.head<3>() + height_m * value.tail<3>();
+}
+
+std::vector<Eigen::Vector3d> MapGeodesy::world(std::span<const Eigen::Vector2d> places_map_m,
+                                               std::span<const double> heights_m) const {
+  std::vector<Ground::Value> grounds(places_map_m.size());
+  std::vector<std::size_t> outside;
+  for (std::size_t i = 0; i < places_map_m.size(); ++i) {
+    const Eigen::Vector2d& place = places_map_m[i];
+    if (ground_->domain().contains(place.x(), place.y())) {
+      grounds[i] = (*ground_)(place.x(), place.y());
+    } else {
+      outside.push_back(i);
+    }
+  }
+  Eigen::Matrix2Xd points(2, static_cast<Eigen::Index>(outside.size()));
+  for (std::size_t k = 0; k < outside.size(); ++k) {
+    points.col(static_cast<Eigen::Index>(k)) = places_map_m[outside[k]];
+  }
+  const bool known = outside.empty() || plane_.geodetic_from_map(points);
+  for (std::size_t k = 0; k < outside.size(); ++k) {
+    const Eigen::Vector2d& place = places_map_m[outside[k]];
+    const auto column = static_cast<Eigen::Index>(k);
+    // One place beyond the projection's range makes PROJ refuse all.
+    grounds[outside[k]] = known ? ground_from_geodetic(points(1, column), points(0, column))
+                                : ground(place.x(), place.y());
+  }
+  std::vector<Eigen::Vector3d> all;
+  all.reserve(grounds.size());
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
+    all.emplace_back(grounds[i].head<3>() + heights_m[i] * grounds[i].tail<3>());
+  }
+  return all;
 }
 
 Eigen::Vector2d MapGeodesy::map_near(double east_m, double north_m) const {
@@ -132,6 +167,16 @@ Eigen::Vector3d RasterWorld::coarse_world_from_map(double x_map_m,
                                                    double y_map_m,
                                                    double spacing_m) const {
   return geodesy_.world(x_map_m, y_map_m, elevation_.coarse_height_m(x_map_m, y_map_m, spacing_m));
+}
+
+std::vector<Eigen::Vector3d> RasterWorld::coarse_world_at(
+    std::span<const Eigen::Vector2d> places_map_m, double spacing_m) const {
+  std::vector<double> heights_m;
+  heights_m.reserve(places_map_m.size());
+  for (const Eigen::Vector2d& place : places_map_m) {
+    heights_m.push_back(elevation_.coarse_height_m(place.x(), place.y(), spacing_m));
+  }
+  return geodesy_.world(places_map_m, heights_m);
 }
 
 Eigen::Vector2d RasterWorld::map_from_world(double east_m, double north_m) const {

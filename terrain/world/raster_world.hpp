@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ class MapGeodesy {
                                    const MapRect& domain);
 
   [[nodiscard]] Eigen::Vector3d world(double x_map_m, double y_map_m, double height_m) const;
+  /// The same at several places. PROJ is called once for all outside of the domain.
+  /// @param heights_m  one per place
+  [[nodiscard]] std::vector<Eigen::Vector3d> world(std::span<const Eigen::Vector2d> places_map_m,
+                                                   std::span<const double> heights_m) const;
   /// Map point whose world point at this height has these east and north, to first order: a start
   /// value for an iteration.
   [[nodiscard]] Eigen::Vector2d map_near(double east_m, double north_m) const;
@@ -33,6 +38,7 @@ class MapGeodesy {
   /// World coordinates of the point on the ellipsoid and of its upward normal.
   using Ground = SmoothMap<6>;
   [[nodiscard]] Ground::Value ground(double x_map_m, double y_map_m) const;
+  [[nodiscard]] Ground::Value ground_from_geodetic(double lat_rad, double lon_rad) const;
 
   MapPlane plane_;
   std::optional<LocalFrame> frame_;
@@ -65,6 +71,8 @@ class RasterWorld final : public TileSource {
   [[nodiscard]] Eigen::Vector3d coarse_world_from_map(double x_map_m,
                                                       double y_map_m,
                                                       double spacing_m) const override;
+  [[nodiscard]] std::vector<Eigen::Vector3d> coarse_world_at(
+      std::span<const Eigen::Vector2d> places_map_m, double spacing_m) const override;
   [[nodiscard]] Eigen::Vector2d map_from_world(double east_m, double north_m) const override;
   [[nodiscard]] double ground_up_m(double east_m, double north_m) const override;
   [[nodiscard]] bool has_imagery(double x_map_m, double y_map_m) const override;

@@ -34,9 +34,9 @@ std::vector<TileId> TexelTiles::missing_of(const std::vector<TileId>& ids,
   return missing;
 }
 
-void TexelTiles::load(const std::vector<TileId>& ids, PixelFormat format) {
+void TexelTiles::load(const std::vector<TileId>& ids, PixelFormat format, std::int64_t limit_ns) {
   const std::vector<TileId> missing = missing_of(ids, format);
-  if (missing.size() > 1) store_->load(missing, format);
+  if (!missing.empty()) store_->load(missing, format, limit_ns);
 }
 
 Result<FoundTile> TexelTiles::get(const TileId& id, PixelFormat format) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -23,8 +24,9 @@ class TexelTiles {
  public:
   TexelTiles(std::shared_ptr<TileStore> store, std::size_t budget_bytes);
 
-  /// Reads those that are not in memory, several at once. Errors are reported by get().
-  void load(const std::vector<terrain::TileId>& ids, PixelFormat format);
+  /// Reads those that are not in memory, several at once, as TileStore::load. Errors are reported
+  /// by get().
+  void load(const std::vector<terrain::TileId>& ids, PixelFormat format, std::int64_t limit_ns);
   /// The tile itself, read if needed. Errors: kIo naming the tile.
   [[nodiscard]] Result<FoundTile> get(const terrain::TileId& id, PixelFormat format);
   /// The best tile available now: the tile, or the nearest coarser one; a missing tile is

@@ -285,7 +285,10 @@ void PictureStreams::ready(const PictureTicket& ticket,
   const bool frame = kind_of(stream->request.name) == PictureRequest::Kind::kCamera;
   // The whole frame was available: it need not follow.
   if (frame && stream->preview && !picture->preview) stream->preview = stream->reduced = false;
-  if (stream->still && !stream->preview) stream->drawing_ns = now_ns - stream->requested_ns;
+  if (stream->still && !stream->preview) {
+    // One that was drawn quickly may have shown ground that was in memory: the next may not.
+    stream->drawing_ns = std::max(now_ns - stream->requested_ns, stream->drawing_ns / 4 * 3);
+  }
   stream->slot.answered_with(picture->frame);
   stream->slot.sending();
   stream->sent = shown;

@@ -98,7 +98,7 @@ class PictureStreams {
     bool still = true;                   ///< the one requested last was to rest
     bool jumped = false;                 ///< the next one is the first after a jump
     bool preview = false;                ///< the one requested last is in half the size
-    std::int64_t drawing_ns = 0;         ///< of the last one that rests, in full detail
+    std::int64_t drawing_ns = 0;         ///< of one that rests, in full detail
     std::size_t still_bytes = SendWindow::kLeastBytes;  ///< size of the last one that rests
     std::size_t moving_bytes = 0;  ///< size of the last one that moves; 0 = none yet
     std::uint64_t video_sent = 0;  ///< video pictures

@@ -124,6 +124,7 @@ FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFra
   auto request = drawn_request(frame, maker);
   if (!request) return request.error();
   request->camera = half_sized(request->camera);
+  request->tile_wait_ns = kPreviewTileWaitNs;
   auto drawn = (*again)->renderer.render_camera(*request);
   if (!drawn) return drawn.error();
   return std::optional(std::make_shared<const Image>(std::move(drawn->image)));

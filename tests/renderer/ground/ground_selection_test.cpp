@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
+#include "renderer/worker_pool.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
 namespace overfly::renderer {
@@ -107,6 +109,35 @@ TEST(GroundSelection, NeitherLooksBehindNorWastesTexels) {
   const Pose up{Eigen::Quaterniond::Identity(), {0.0, 0.0, 100.0}};  // looks up
   EXPECT_TRUE(
       select_ground(patches, View::from(camera, up), {}, [](const GroundPatch&) {}).empty());
+}
+
+/// Hills, whose relief divides patches further than their texels do.
+std::shared_ptr<const terrain::TileSource> hilly_world() {
+  overfly::testing::ProceduralGround::Options options;
+  options.height_m = overfly::testing::hills_m;
+  options.height_range_m = {-20.0, 20.0};
+  return std::make_shared<overfly::testing::ProceduralGround>(options);
+}
+
+TEST(GroundSelection, SeveralThreadsSelectTheSame) {
+  const auto world = hilly_world();
+  const PinholeCamera camera{640, 480, 400.0, 400.0, 319.5, 239.5};
+  const View view = View::from(
+      camera, {R_world_body_from({0.3, 0.5, 1.0}) * R_body_camera_nadir(), {40.0, 70.0, 90.0}});
+  WorkerPool workers(3);
+  GroundPatches alone(world);
+  GroundPatches together(std::make_shared<GroundPatchStore>(world), &workers);
+  const auto expected = select_ground(alone, view, {}, [](const GroundPatch&) {});
+  ASSERT_GT(expected.size(), 10U);
+  for (int round = 0; round < 2; ++round) {
+    const auto leaves = select_ground(together, view, {}, [](const GroundPatch&) {});
+    ASSERT_EQ(leaves.size(), expected.size());
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      EXPECT_EQ(leaves[i].patch->id, expected[i].patch->id);
+      EXPECT_EQ(leaves[i].patch->points, expected[i].patch->points);
+      EXPECT_EQ(leaves[i].patch->square_error_m, expected[i].patch->square_error_m);
+    }
+  }
 }
 
 }  // namespace

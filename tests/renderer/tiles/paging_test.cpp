@@ -89,7 +89,7 @@ class Paging : public ::testing::TestWithParam<CameraBackend> {
         {R_world_body_from({0.2, 0.0, 0.5 * kPi}) * R_body_camera_nadir(), {east_m, 30.0, 120.0}},
         0,
         PixelFormat::kGrey8);
-    request.wait_for_tiles = wait;
+    request.tile_wait_ns = wait ? kForAllTiles : 0;
     return request;
   }
 
@@ -154,6 +154,50 @@ TEST_P(Paging, FlyingTowardsTheGroundHasItThereInTime) {
   EXPECT_EQ(store_->counts().read_on_demand, before);
 }
 
+TEST_P(Paging, ALimitedWaitDrawsWhatIsThereInTime) {
+  CameraRequest hasty = request(0.0, true);
+  hasty.tile_wait_ns = 1;
+  const auto early = renderer_->render_camera(hasty);
+  ASSERT_TRUE(early.ok()) << early.error().message;
+  EXPECT_GT(early->late_tiles, 0);
+  EXPECT_EQ(early->void_fraction, 0.0);
+  store_->wait_until_idle();
+  const auto settled = renderer_->render_camera(hasty);
+  ASSERT_TRUE(settled.ok()) << settled.error().message;
+  EXPECT_EQ(settled->late_tiles, 0) << "what was late was read for the next picture";
+  CameraRequest patient = request(300.0, true);
+  patient.tile_wait_ns = 60'000'000'000;
+  const auto waited = renderer_->render_camera(patient);
+  ASSERT_TRUE(waited.ok()) << waited.error().message;
+  EXPECT_EQ(waited->late_tiles, 0);
+  const auto whole = renderer_->render_camera(request(300.0, true));
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  EXPECT_EQ(waited->image.data, whole->image.data);
+}
+
+/// The ray-caster draws none.
+class ScenePaging : public Paging {};
+
+TEST_P(ScenePaging, AViewWithoutWaitIsRightOnceItsTilesAreThere) {
+  renderer::SceneView view;
+  view.width_px = 160;
+  view.height_px = 120;
+  view.T_world_camera = {R_world_body_from({0.0, 0.0, 0.5 * kPi}) * R_body_camera_nadir(),
+                         {0.0, 30.0, 120.0}};
+  view.tile_wait_ns = 0;
+  const auto early = renderer_->render_scene(view, {});
+  ASSERT_TRUE(early.ok()) << early.error().message;
+  store_->wait_until_idle();
+  const auto settled = renderer_->render_scene(view, {});
+  ASSERT_TRUE(settled.ok()) << settled.error().message;
+  view.tile_wait_ns = kForAllTiles;
+  const auto waited = renderer_->render_scene(view, {});
+  ASSERT_TRUE(waited.ok()) << waited.error().message;
+  EXPECT_NE(early->data, waited->data);
+  EXPECT_EQ(settled->data, waited->data);
+  EXPECT_LT(mean_difference(*early, *waited), 40.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends,
                          Paging,
                          ::testing::Values(CameraBackend::kEgl, CameraBackend::kRaycast),
@@ -161,6 +205,7 @@ INSTANTIATE_TEST_SUITE_P(Backends,
                            return std::string(suite.param == CameraBackend::kEgl ? "egl"
                                                                                  : "raycast");
                          });
+INSTANTIATE_TEST_SUITE_P(Backends, ScenePaging, ::testing::Values(CameraBackend::kEgl));
 
 }  // namespace
 }  // namespace overfly::renderer

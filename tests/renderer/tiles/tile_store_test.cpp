@@ -188,6 +188,17 @@ TEST(TileStore, LoadsSeveralTilesAtOnceAndEachOnce) {
   EXPECT_EQ(tiles->tiles_read(), 4);
 }
 
+TEST(TileStore, LoadsUntilItsLimitAndLeavesTheRestToItsThreads) {
+  const auto tiles = ground();
+  TileStore store(tiles, {});
+  const std::vector<TileId> ids{{0, 1, 1}, {0, 2, 1}, {1, 0, 0}};
+  store.load(ids, PixelFormat::kGrey8, 0);
+  EXPECT_EQ(store.counts().read_on_demand, 0);
+  store.wait_until_idle();
+  for (const TileId& id : ids) EXPECT_NE(store.peek(id, PixelFormat::kGrey8), nullptr);
+  EXPECT_EQ(store.counts().read_ahead, 3);
+}
+
 TEST(TileStore, ReportsWhatCouldNotBeLoadedWhenItIsWanted) {
   TileStore store(ground(0), {});
   store.load(std::vector<TileId>{{0, 3, 2}, {0, 4, 2}}, PixelFormat::kGrey8);

@@ -220,7 +220,7 @@ TEST_F(CachedRendererTest, KeepsOnlyCompletePictures) {
   const auto cached = renderer(*cache, 2);
   CameraRequest request = request_at(1);
   ASSERT_TRUE(cached->render_camera(request).ok());
-  request.wait_for_tiles = false;
+  request.tile_wait_ns = 0;
   ASSERT_TRUE(cached->render_camera(request).ok());
   cache->finish();
   EXPECT_EQ(cache->use().added, 0U);

@@ -87,7 +87,7 @@ TEST(FrameKey, DoesNotDependOnWhatIsOnlyReadAhead) {
   CameraRequest request = moving_request();
   const std::string key = frame_key("context", request);
   request.velocity_world_m_s = {1.0, 2.0, 3.0};
-  request.wait_for_tiles = false;
+  request.tile_wait_ns = 0;
   EXPECT_EQ(frame_key("context", request), key);
 }
 

@@ -244,6 +244,33 @@ TEST_F(PictureStreamsTest, PreviewsAFrameThatTakesLongAfterAJump) {
   EXPECT_FALSE(whole->preview);
 }
 
+TEST_F(PictureStreamsTest, PreviewsForAWhileAfterAPictureThatTookLong) {
+  subscribe(false, true);
+  ASSERT_TRUE(next(false));
+  drawing_ns_ = kLongNs;
+  send();
+  show_all();
+  // From now on the ground is in memory.
+  drawing_ns_ = 1'000'000;
+  int previews = 0;
+  for (; previews < 20; ++previews) {
+    streams_.show_after_jump();
+    const auto request = next(false);
+    ASSERT_TRUE(request);
+    if (!request->preview) break;
+    preview_ = true;
+    send();
+    show_all();
+    now_ns_ += kPreviewStandsNs;
+    ASSERT_TRUE(next(false));
+    preview_ = false;
+    send();
+    show_all();
+  }
+  EXPECT_GE(previews, 2);
+  EXPECT_LT(previews, 20);
+}
+
 TEST_F(PictureStreamsTest, SendsAFrameOnceThatCameWholeInsteadOfItsPreview) {
   subscribe(false, true);
   ASSERT_TRUE(next(false));

@@ -25,7 +25,7 @@ class Paging final : public testing::WrappedRenderer {
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     auto frame = inner().render_camera(request);
     const Eigen::Vector3d place_m = request.T_world_camera.at(request.t_ns).translation;
-    if (request.wait_for_tiles) fetched_m_.push_back(place_m);
+    if (request.tile_wait_ns > 0) fetched_m_.push_back(place_m);
     const bool there =
         std::any_of(fetched_m_.begin(), fetched_m_.end(), [&](const Eigen::Vector3d& fetched_m) {
           return (fetched_m - place_m).norm() < 1.0;

@@ -30,7 +30,7 @@ class TileReader final : public testing::WrappedRenderer {
   Result<renderer::CameraFrame> render_camera(const renderer::CameraRequest& request) override {
     auto frame = inner().render_camera(request);
     const auto tile = tiles_->tile({0, 0, 0});
-    if (!tile && request.wait_for_tiles) return tile.error().in("tile 0/0/0");
+    if (!tile && request.tile_wait_ns > 0) return tile.error().in("tile 0/0/0");
     if (!tile && frame) frame->late_tiles = 1;
     return frame;
   }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <map>
+#include <random>
+#include <vector>
 
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
@@ -251,6 +253,33 @@ TEST(Layers, OfHeightsKeepTheirUnitAndDatumEach) {
   EXPECT_NEAR(height_at(far, 40.0, 40.0), 205.0 - 33.0, 8.0);
   for (const double column : {5.0, 20.0, 28.0, 52.0, 70.0}) {
     EXPECT_NEAR(height_at(world, column, 40.0), 700.0 * kFootM, 1e-3) << column;
+  }
+}
+
+TEST(Layers, AreTheSameGroundAtOnePlaceAndAtMany) {
+  const TemporaryFolder folder;
+  const auto spec = read_world_manifest(testing::write_layered_world(folder.path()));
+  ASSERT_TRUE(spec) << spec.error().message;
+  const World world = opened(*spec);
+  const TileGrid& grid = world.tiles->grid();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(-1.0, 1.0);
+  // Within the imagery, around it, and with places beyond the range of the projection among them.
+  for (const std::vector<double>& reaches_m :
+       {std::vector<double>{200.0}, {200.0, 5e3, 90e3}, {200.0, 90e3, 1e9}}) {
+    std::vector<Eigen::Vector2d> places_map_m;
+    for (int i = 0; i < 300; ++i) {
+      const double reach_m = reaches_m[i % reaches_m.size()];
+      places_map_m.emplace_back(grid.left_x_m + reach_m * along(random),
+                                grid.top_y_m + reach_m * along(random));
+    }
+    const std::vector<Eigen::Vector3d> points = world.tiles->coarse_world_at(places_map_m, 12.0);
+    ASSERT_EQ(points.size(), places_map_m.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector2d& place = places_map_m[i];
+      EXPECT_EQ(points[i], world.tiles->coarse_world_from_map(place.x(), place.y(), 12.0))
+          << place.transpose();
+    }
   }
 }
 

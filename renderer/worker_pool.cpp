@@ -1,5 +1,6 @@
-#include "renderer/raycast/worker_pool.hpp"
+#include "renderer/worker_pool.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -10,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace overfly::renderer::raycast {
+namespace overfly::renderer {
 
 namespace {
 
@@ -25,6 +26,11 @@ bool comes_soon(const Condition& condition) {
     std::this_thread::yield();
   }
   return false;
+}
+
+int chosen_threads(int wanted) {
+  if (wanted > 0) return wanted;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
 }
 
 }  // namespace
@@ -73,7 +79,8 @@ struct WorkerPool::State {
 
 WorkerPool::WorkerPool(int threads) : state_(std::make_unique<State>()) {
   try {
-    for (int i = 1; i < threads; ++i) state_->threads.emplace_back([this] { state_->serve(); });
+    for (int i = chosen_threads(threads); i > 1; --i)
+      state_->threads.emplace_back([this] { state_->serve(); });
   } catch (const std::system_error&) {
     // The system cannot start more threads: the existing ones do all the work.
   }
@@ -114,4 +121,4 @@ void WorkerPool::run(int jobs, const std::function<void(int)>& job) {
   if (state_->thrown) std::rethrow_exception(std::exchange(state_->thrown, nullptr));
 }
 
-}  // namespace overfly::renderer::raycast
+}  // namespace overfly::renderer

@@ -1,16 +1,16 @@
-// A few threads that share the work on one image.
+// A few threads that share the work on one picture.
 #pragma once
 
 #include <functional>
 #include <memory>
 
-namespace overfly::renderer::raycast {
+namespace overfly::renderer {
 
-/// Threads that wait between images. The caller's thread works too, so a pool of one starts no
+/// Threads that wait between pictures. The caller's thread works too, so a pool of one starts no
 /// threads.
 class WorkerPool {
  public:
-  /// @param threads  that work at once, >= 1
+  /// @param threads  that work at once; 0 = one per core, at most 8
   explicit WorkerPool(int threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -28,4 +28,4 @@ class WorkerPool {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace overfly::renderer::raycast
+}  // namespace overfly::renderer

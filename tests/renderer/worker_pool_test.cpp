@@ -1,5 +1,5 @@
 // Shared work is done once, by all threads, and failures reach the one who asked.
-#include "renderer/raycast/worker_pool.hpp"
+#include "renderer/worker_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace overfly::renderer::raycast {
+namespace overfly::renderer {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -102,4 +102,4 @@ TEST(WorkerPool, OfManyExceptionsOneArrives) {
 }
 
 }  // namespace
-}  // namespace overfly::renderer::raycast
+}  // namespace overfly::renderer
