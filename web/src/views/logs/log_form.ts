@@ -74,9 +74,12 @@ export class LogForm {
     change(this.smooth, () => logs.set({ smooth: this.smooth.checked }));
     change(this.offset, () => logs.set({ autoOffset: this.offset.checked }));
     change(this.rebase, () => logs.set({ rebase: this.rebase.checked }));
-    change(this.agl, () => logs.set({ lowest_agl_m: this.agl.value }));
-    change(this.turn, () => logs.set({ turn_deg: this.turn.value }));
-    change(this.geoid, () => logs.set({ geoid_separation_m: this.geoid.value }));
+    // While it is typed: an error that goes away with the next click would move what is clicked.
+    const type = (input: HTMLInputElement, action: () => void) =>
+      input.addEventListener('input', action);
+    type(this.agl, () => logs.set({ lowest_agl_m: this.agl.value }));
+    type(this.turn, () => logs.set({ turn_deg: this.turn.value }));
+    type(this.geoid, () => logs.set({ geoid_separation_m: this.geoid.value }));
     const time = (input: HTMLInputElement) =>
       input.value.trim() === '' || Number.isNaN(Number(input.value)) ? null : Number(input.value);
     change(this.from, () => logs.set({ from_s: time(this.from) }));
