@@ -216,10 +216,10 @@ struct TileStore::State {
   }
 
   void load_all(std::span<const TileId> ids, PixelFormat format, std::int64_t limit_ns) {
-    // Without threads, or for a single tile, `get` is as fast.
-    if (limit_ns == kForAllTiles && (threads.empty() || ids.size() < 2)) return;
     using Clock = std::chrono::steady_clock;
     const bool limited = limit_ns != kForAllTiles;
+    // Without threads `get` and `find` read; a single tile is read by `get` as fast.
+    if (threads.empty() || (!limited && ids.size() < 2)) return;
     const auto end = Clock::now() + std::chrono::nanoseconds(limited ? limit_ns : 0);
     std::unique_lock lock(mutex);
     for (const TileId& id : ids) ask({id, format});
@@ -234,11 +234,15 @@ struct TileStore::State {
     }
     // `get` waits for a tile that another thread is still reading, `find` does not.
     if (!limited) return;
+    // So that a thread that rests with a tile does not.
+    ++waiting;
+    work.notify_all();
     loaded.wait_until(lock, end, [&] {
       return std::none_of(ids.begin(), ids.end(), [&](const TileId& id) {
         return loading.contains({id, format});
       });
     });
+    --waiting;
   }
 
   /// Requests a tile from the threads, unless it is here or on its way. @pre the lock is held

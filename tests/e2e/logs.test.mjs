@@ -178,6 +178,8 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await error.waitFor({ state: 'visible' });
     assert.match(await error.innerText(), /rebase\.lowest_agl_m/);
     await page.locator('#log-agl').fill('120');
+    // While the field has the focus: otherwise the next click would move what it hits.
+    await error.waitFor({ state: 'hidden' });
   });
 
   step('flies the slice over the chosen world', async () => {

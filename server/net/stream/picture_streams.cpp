@@ -16,6 +16,8 @@ using server::PictureRequest;
 constexpr std::int64_t kViewMovesNs = 300'000'000;
 /// A scene or frame that took longer to draw is previewed after a jump in time.
 constexpr std::int64_t kLongDrawingNs = 15'000'000;
+/// Longer ones count as this: five whole pictures later that do not take long, previews end.
+constexpr std::int64_t kLongestDrawingNs = 4 * kLongDrawingNs;
 /// A picture previewed after a jump is drawn in full once no other jump has followed for so long:
 /// the next preview would have to wait for it.
 constexpr std::int64_t kPreviewStandsNs = 200'000'000;
@@ -287,7 +289,9 @@ void PictureStreams::ready(const PictureTicket& ticket,
   if (frame && stream->preview && !picture->preview) stream->preview = stream->reduced = false;
   if (stream->still && !stream->preview) {
     // One that was drawn quickly may have shown ground that was in memory: the next may not.
-    stream->drawing_ns = std::max(now_ns - stream->requested_ns, stream->drawing_ns / 4 * 3);
+    // Opening a world may have taken a minute: that is soon forgotten.
+    const std::int64_t drawing_ns = std::min(now_ns - stream->requested_ns, kLongestDrawingNs);
+    stream->drawing_ns = std::max(drawing_ns, stream->drawing_ns / 4 * 3);
   }
   stream->slot.answered_with(picture->frame);
   stream->slot.sending();

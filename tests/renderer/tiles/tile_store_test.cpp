@@ -199,6 +199,14 @@ TEST(TileStore, LoadsUntilItsLimitAndLeavesTheRestToItsThreads) {
   EXPECT_EQ(store.counts().read_ahead, 3);
 }
 
+TEST(TileStore, WithoutThreadsALimitLeavesNothingBehind) {
+  TileStore store(ground(), {std::size_t{64} << 20U, 0});
+  const std::vector<TileId> ids{{0, 1, 1}, {0, 2, 1}};
+  store.load(ids, PixelFormat::kGrey8, 0);
+  store.wait_until_idle();
+  EXPECT_NE(store.find(ids.front(), PixelFormat::kGrey8), nullptr);
+}
+
 TEST(TileStore, ReportsWhatCouldNotBeLoadedWhenItIsWanted) {
   TileStore store(ground(0), {});
   store.load(std::vector<TileId>{{0, 3, 2}, {0, 4, 2}}, PixelFormat::kGrey8);

@@ -82,8 +82,8 @@ export class LogForm {
     type(this.geoid, () => logs.set({ geoid_separation_m: this.geoid.value }));
     const time = (input: HTMLInputElement) =>
       input.value.trim() === '' || Number.isNaN(Number(input.value)) ? null : Number(input.value);
-    change(this.from, () => logs.set({ from_s: time(this.from) }));
-    change(this.to, () => logs.set({ to_s: time(this.to) }));
+    type(this.from, () => logs.set({ from_s: time(this.from) }));
+    type(this.to, () => logs.set({ to_s: time(this.to) }));
     const boxes = this.boxes.map(({ box }) => box);
     for (const box of boxes) {
       change(box, () =>
