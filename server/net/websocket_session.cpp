@@ -136,7 +136,7 @@ class WebSocketSession final : public ViewerPort,
 
   std::shared_ptr<ServerContext> context_;
   std::unique_ptr<ConnectionTable::Place> place_;
-  websocket::stream<beast::tcp_stream> ws_;
+  websocket::stream<beast::tcp_stream, false> ws_;  ///< pictures are compressed already
   beast::flat_buffer read_buffer_;
   std::deque<Outgoing> queue_;  ///< the front one is being sent while writing_
   std::size_t unsent_bytes_ = 0;

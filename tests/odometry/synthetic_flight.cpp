@@ -26,7 +26,7 @@ float bilinear_repeated(const Image& image, double x, double y) {
   const double fx = std::floor(x);
   const double fy = std::floor(y);
   const auto wrap = [](double v, int size) {
-    const int i = static_cast<int>(std::fmod(v, size));
+    const int i = static_cast<int>(v) % size;
     return i < 0 ? i + size : i;
   };
   const int x0 = wrap(fx, image.width_px);
@@ -110,11 +110,11 @@ double SyntheticGround::height_m(double east_m, double north_m) const {
 }
 
 float SyntheticGround::sample(double east_m, double north_m, double footprint_m) const {
-  const double level = std::max(0.0, std::log2(footprint_m / texel_m_));
+  const double level = std::max(0.0F, std::log2(static_cast<float>(footprint_m / texel_m_)));
   const auto fine = std::min(static_cast<std::size_t>(level), mips_.size() - 1);
   const std::size_t coarse = std::min(fine + 1, mips_.size() - 1);
   const auto at = [&](std::size_t mip) {
-    const double size = std::ldexp(texel_m_, static_cast<int>(mip));
+    const double size = texel_m_ * static_cast<double>(std::uint64_t{1} << mip);
     return bilinear_repeated(mips_[mip], east_m / size - 0.5, -north_m / size - 0.5);
   };
   const auto share = static_cast<float>(std::min(1.0, level - static_cast<double>(fine)));
@@ -163,7 +163,7 @@ Image SyntheticGround::render(const CameraModel& camera_model,
           const double before_m = ground_m;
           ground_m = height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y());
           along = (ground_m - eye.z()) / ray.z();
-          if (std::abs(ground_m - before_m) < 1e-5) break;
+          if (std::abs(ground_m - before_m) < 1e-3) break;
         }
       }
       // The footprint of a pixel, mean of along and across the slope.

@@ -198,8 +198,8 @@ BlockMips mips_of(const TexelBlock& block) {
   return first == static_cast<int>(high) ? BlockMips{Mips::kTwo, first} : BlockMips{};
 }
 
-/// Asks for the cache line of a pixel's texels, for all eight pixels that lie next to it. The second
-/// pass then waits less: a tenth of a picture's time.
+/// Asks for the cache line of a pixel's texels, for all eight pixels that lie next to it. The
+/// second pass then waits less: a tenth of a picture's time.
 OVERFLY_AVX2 void fetch(const PackedTile& tile, std::int32_t element) {
   if (!tile.wide) _mm_prefetch(reinterpret_cast<const char*>(&tile.pairs[element]), _MM_HINT_T0);
 }

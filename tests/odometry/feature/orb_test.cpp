@@ -85,6 +85,9 @@ TEST(OrbExtractor, FindsNothingOnBlackOrTinyImages) {
 
 TEST(HammingDistance, CountsDifferingBits) {
   EXPECT_EQ(hamming_distance({1, 0, 0, 0}, {0, 3, 0, ~std::uint64_t{0}}), 67);
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  EXPECT_EQ(hamming_distance({0, 0, 0, 0}, {kAll, kAll, kAll, kAll}), 256);
+  EXPECT_EQ(hamming_distance({kAll, 5, 0, 1}, {kAll, 5, 0, 1}), 0);
 }
 
 TEST(CellGrid, MarksWhatABoxTouches) {
