@@ -86,7 +86,8 @@ export class Dashboard {
     );
   }
 
-  async untilStatus(id, status, timeout) {
+  /** A flight takes several times as long on a machine that does other work. */
+  async untilStatus(id, status, timeout = 3 * kPatience_ms) {
     await this.until(
       ([run, wanted]) =>
         document.querySelector(`.run[data-run="${run}"]`)?.dataset.status === wanted,
