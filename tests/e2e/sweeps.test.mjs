@@ -138,7 +138,7 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     assert.equal((await texts()).filter((text) => text === 'no start').length, 4);
     await page.locator('[data-role=sweep-figure]').selectOption('success');
     await matrix('feature').locator('.sweep-cell', { hasText: '100' }).first().waitFor();
-    assert.deepEqual((await texts()).toSorted(), [...Array(4).fill('0'), ...Array(4).fill('100')]);
+    assert.deepEqual((await texts()).sort(), [...Array(4).fill('0'), ...Array(4).fill('100')]);
     await page.locator('[data-role=sweep-figure]').selectOption('paper_position');
     await matrix('feature').locator('.sweep-cell', { hasText: 'X' }).first().waitFor();
     assert.equal((await texts()).filter((text) => text === 'X').length, 4);
