@@ -154,7 +154,8 @@ export function withCommand(mission: Mission, id: number, command: number): Miss
   const made = newItem(mission, index, id, command, place);
   if (made.kind !== 'simple') return mission;
   const item = hasHeight({ ...old, id }) && hasHeight(made) ? keptHeight(made, old) : made;
-  return { ...mission, items: mission.items.with(index, { ...item, id }) };
+  const items = mission.items.map((kept, i) => (i === index ? { ...item, id } : kept));
+  return { ...mission, items };
 }
 
 function keptHeight(made: SimpleItem, old: SimpleItem): SimpleItem {
