@@ -68,54 +68,49 @@ class Kernel {
   std::vector<float> weights_;
 };
 
-/// Red, green, blue and 1; all 0 where there is no texel. One vector register, so that a tap costs
-/// one multiplication and one addition.
+/// Red, green, blue and 1: one vector register, so that a tap costs one multiplication and one
+/// addition.
 using Texel [[gnu::vector_size(16)]] = float;
 
-class Texels {
- public:
-  explicit Texels(const Patch& patch)
-      : width_(patch.rgb.width_px), height_(patch.rgb.height_px), texels_(patch.valid.data.size()) {
-    const std::uint8_t* rgb = patch.rgb.data.data();
-    for (std::size_t i = 0; i < texels_.size(); ++i, rgb += 3) {
-      if (patch.valid.data[i] == 0) continue;
-      texels_[i] = Texel{
-          static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]), 1.0F};
+/// @param x, y  place in the source, with texel centres at integers
+void sample(const Patch& source,
+            double x,
+            double y,
+            const Kernel& kernel_x,
+            const Kernel& kernel_y,
+            std::uint8_t* rgb,
+            std::uint8_t* valid) {
+  int first_x = 0;
+  int first_y = 0;
+  const float* weights_x = kernel_x.at(x, first_x);
+  const float* weights_y = kernel_y.at(y, first_y);
+  const int begin_x = std::max(0, -first_x);
+  const int end_x = std::min(kernel_x.taps(), source.rgb.width_px - first_x);
+  const int begin_y = std::max(0, -first_y);
+  const int end_y = std::min(kernel_y.taps(), source.rgb.height_px - first_y);
+  Texel sum{0, 0, 0, 0};
+  for (int j = begin_y; j < end_y; ++j) {
+    const std::ptrdiff_t row =
+        static_cast<std::ptrdiff_t>(first_y + j) * source.rgb.width_px + first_x;
+    const std::uint8_t* texels = source.rgb.data.data() + 3 * row;
+    const std::uint8_t* is_valid = source.valid.data.data() + row;
+    for (int i = begin_x; i < end_x; ++i) {
+      if (is_valid[i] == 0) continue;
+      const std::uint8_t* texel = texels + 3 * i;
+      sum += weights_x[i] * weights_y[j] *
+             Texel{static_cast<float>(texel[0]),
+                   static_cast<float>(texel[1]),
+                   static_cast<float>(texel[2]),
+                   1.0F};
     }
   }
-
-  /// @param x, y  place in the patch, with texel centres at integers
-  void sample(double x,
-              double y,
-              const Kernel& kernel_x,
-              const Kernel& kernel_y,
-              std::uint8_t* rgb,
-              std::uint8_t* valid) const {
-    int first_x = 0;
-    int first_y = 0;
-    const float* weights_x = kernel_x.at(x, first_x);
-    const float* weights_y = kernel_y.at(y, first_y);
-    const int begin_x = std::max(0, -first_x);
-    const int end_x = std::min(kernel_x.taps(), width_ - first_x);
-    const int begin_y = std::max(0, -first_y);
-    const int end_y = std::min(kernel_y.taps(), height_ - first_y);
-    Texel sum{0, 0, 0, 0};
-    for (int j = begin_y; j < end_y; ++j) {
-      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(first_y + j) * width_ + first_x;
-      for (int i = begin_x; i < end_x; ++i) sum += weights_x[i] * weights_y[j] * texels_[row + i];
-    }
-    const float total = sum[3];
-    if (total < 0.5F) return;
-    for (int c = 0; c < 3; ++c) {
-      rgb[c] = static_cast<std::uint8_t>(std::clamp(sum[c] / total + 0.5F, 0.0F, 255.0F));
-    }
-    *valid = 255;
+  const float total = sum[3];
+  if (total < 0.5F) return;
+  for (int c = 0; c < 3; ++c) {
+    rgb[c] = static_cast<std::uint8_t>(std::clamp(sum[c] / total + 0.5F, 0.0F, 255.0F));
   }
-
- private:
-  int width_, height_;
-  std::vector<Texel> texels_;
-};
+  *valid = 255;
+}
 
 }  // namespace
 
@@ -155,7 +150,6 @@ Result<Patch> resample(const ImageryRaster& raster,
   const int bottom = static_cast<int>(std::ceil(high.y() * scale)) + kernel_y.taps();
   const auto source = raster.read(level, left, top, right - left, bottom - top, cancelled);
   if (!source) return source.error();
-  const Texels texels(*source);
   for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
     const double x = pixels(0, i) * scale - 0.5 - left;
     const double y = pixels(1, i) * scale - 0.5 - top;
@@ -163,7 +157,7 @@ Result<Patch> resample(const ImageryRaster& raster,
           y < bottom - top + kernel_y.taps())) {
       continue;
     }
-    texels.sample(x, y, kernel_x, kernel_y, &result.rgb.data[3 * i], &result.valid.data[i]);
+    sample(*source, x, y, kernel_x, kernel_y, &result.rgb.data[3 * i], &result.valid.data[i]);
   }
   return result;
 }

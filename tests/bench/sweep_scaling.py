@@ -5,8 +5,9 @@
 Workers take flights as `overfly sweep work` does: in the sweep's order, the next one when the last has
 been delivered. Not simulated: a file system that gets slower with the number of nodes.
 
-Usage: sweep_scaling.py SWEEP_FOLDER... [--repeats N] [--start-s S] [--take-s S] [--interval-s S]
+Usage: sweep_scaling.py SWEEP_FOLDER... [--repeats N] [--longest-s S] [--start-s S] [--take-s S] [--interval-s S]
   --repeats N   flights of each recorded one; their durations vary as the recorded ones (default 20)
+  --longest-s S leave out recorded flights that took longer: they were paused, or shared the machine (all)
   --start-s S   from the submission of an array to a task's first flight, evenly from 0 to S (20)
   --take-s S    to take a flight and to deliver it (1)
   --interval-s  at which the sweep command looks for the last flight (5)
@@ -50,13 +51,17 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("folders", nargs="+", type=pathlib.Path)
     parser.add_argument("--repeats", type=int, default=20)
+    parser.add_argument("--longest-s", type=float, default=float("inf"))
     parser.add_argument("--start-s", type=float, default=20.0)
     parser.add_argument("--take-s", type=float, default=1.0)
     parser.add_argument("--interval-s", type=float, default=5.0)
     options = parser.parse_args()
-    recorded = [duration for folder in options.folders for duration in durations_s(folder)]
+    flown = [duration for folder in options.folders for duration in durations_s(folder)]
+    recorded = [duration for duration in flown if duration <= options.longest_s]
     if not recorded:
         raise SystemExit("no completed flight in " + ", ".join(map(str, options.folders)))
+    if len(recorded) < len(flown):
+        print(f"left out: {len(flown) - len(recorded)} flights of more than {options.longest_s:.0f} s")
     chance = random.Random(1)
     # All cells once, then all twice, as a sweep does.
     flights = recorded + [chance.choice(recorded) for _ in range((options.repeats - 1) * len(recorded))]
