@@ -36,6 +36,9 @@ class CombinedRenderer final : public Renderer {
     if (!scenes_.ok()) return scenes_.error().in("scene views need OpenGL");
     return (*scenes_)->render_scene(view, content);
   }
+  void expect_scenes(const std::vector<SceneView>& views) override {
+    if (scenes_.ok() && *scenes_ != nullptr) (*scenes_)->expect_scenes(views);
+  }
   [[nodiscard]] RendererInfo info() const override {
     RendererInfo info = camera_->info();
     info.camera_note = note_;

@@ -205,6 +205,9 @@ class Renderer {
   /// Draws an RGB view of the scene.
   [[nodiscard]] virtual Result<Image> render_scene(const SceneView& view,
                                                    const SceneContent& content) = 0;
+  /// Tells which scene views may be drawn later: their ground is sampled in the background, the
+  /// first view first, as long as there is room. Replaces the views told before. Changes no image.
+  virtual void expect_scenes(const std::vector<SceneView>& /*views*/) {}
   [[nodiscard]] virtual RendererInfo info() const = 0;
 };
 

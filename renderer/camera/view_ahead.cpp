@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <ctime>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <set>
@@ -39,8 +40,11 @@ PinholeCamera widened(const PinholeCamera& camera) {
 }  // namespace
 
 struct ViewAhead::State {
-  State(std::shared_ptr<TileStore> store, std::shared_ptr<GroundPatchStore> patch_store)
-      : tiles(std::move(store)), patches(std::move(patch_store)), thread([this] { run(); }) {}
+  State(std::shared_ptr<TileStore> tile_store, std::shared_ptr<GroundPatchStore> patch_store)
+      : tiles(std::move(tile_store)),
+        store(std::move(patch_store)),
+        patches(store),
+        thread([this] { run(); }) {}
 
   ~State() {
     {
@@ -56,6 +60,10 @@ struct ViewAhead::State {
   void run() {
     std::unique_lock lock(mutex);
     while (!stopping) {
+      if (waiting.empty() && !later.empty()) {
+        look_later(lock);
+        continue;
+      }
       if (waiting.empty()) {
         busy = false;
         changed.notify_all();
@@ -77,6 +85,29 @@ struct ViewAhead::State {
       lock.lock();
       cpu_s += spent_s;
     }
+  }
+
+  /// Samples the next view of `later`, then rests, unless something else is to be done.
+  void look_later(std::unique_lock<std::mutex>& lock) {
+    busy = true;
+    const View view = later.front();
+    later.pop_front();
+    lock.unlock();
+    const double before_s = thread_cpu_s();
+    bool has_room = store->has_room();
+    try {
+      if (has_room) (void)select_ground(patches, view, {}, [](const GroundPatch&) {});
+    } catch (const std::exception&) {
+      has_room = false;
+    }
+    patches.end_view();
+    const double spent_s = thread_cpu_s() - before_s;
+    lock.lock();
+    cpu_s += spent_s;
+    if (!has_room) later.clear();
+    changed.wait_for(lock, std::chrono::duration<double>(spent_s), [this] {
+      return stopping || !waiting.empty();
+    });
   }
 
   void look_ahead(const std::vector<CameraRequest>& requests) {
@@ -112,6 +143,7 @@ struct ViewAhead::State {
   }
 
   std::shared_ptr<TileStore> tiles;
+  std::shared_ptr<GroundPatchStore> store;
   GroundPatches patches;
   /// Tiles for all cameras of the latest time, those of the first camera first: a request for tiles
   /// replaces the previous one. Used by the thread only.
@@ -123,6 +155,7 @@ struct ViewAhead::State {
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<CameraRequest> waiting;  // of the same time
+  std::deque<View> later;              // of expect_later
   bool is_other_time = false;          // than that of the requests before
   std::int64_t looked_at_ns = -kEveryNs;
   bool busy = true;
@@ -150,9 +183,16 @@ void ViewAhead::expect(const CameraRequest& request) {
   state_->changed.notify_all();
 }
 
+void ViewAhead::expect_later(std::vector<View> views) {
+  const std::lock_guard lock(state_->mutex);
+  state_->later.assign(views.begin(), views.end());
+  state_->changed.notify_all();
+}
+
 void ViewAhead::wait_until_idle() {
   std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [this] { return !state_->busy && state_->waiting.empty(); });
+  state_->changed.wait(
+      lock, [this] { return !state_->busy && state_->waiting.empty() && state_->later.empty(); });
 }
 
 double ViewAhead::cpu_s() const {

@@ -1,10 +1,12 @@
-// Reads ahead the ground that a moving camera is about to see.
+// Reads ahead the ground that a moving camera is about to see, or that a viewer may look at.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "renderer/ground/ground_patch.hpp"
+#include "renderer/ground/view.hpp"
 #include "renderer/renderer.hpp"
 #include "renderer/tiles/tile_store.hpp"
 
@@ -27,7 +29,10 @@ class ViewAhead {
   /// Notifies the thread of an image being drawn; returns at once. Cameras of the same time are all
   /// followed.
   void expect(const CameraRequest& request);
-  /// Waits until the thread has processed all notifications.
+  /// Samples the ground of these views too, when nothing else is to be read ahead, until the
+  /// patches fill most of their store. Replaces the views of the last call.
+  void expect_later(std::vector<View> views);
+  /// Waits until the thread has processed all notifications and views.
   void wait_until_idle();
   /// CPU time of the thread so far.
   [[nodiscard]] double cpu_s() const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "renderer/camera/view_ahead.hpp"
 #include "renderer/camera_pipeline.hpp"
@@ -98,6 +99,16 @@ class EglRenderer final : public Renderer {
                        ground_,
                        textures_,
                        view.tile_wait_ns);
+  }
+
+  void expect_scenes(const std::vector<SceneView>& scenes) override {
+    std::vector<View> views;
+    views.reserve(scenes.size());
+    for (const SceneView& scene : scenes) {
+      const Result<PinholeCamera> camera = camera_of(scene);
+      if (camera) views.push_back(View::from(*camera, scene.T_world_camera));
+    }
+    ahead_.expect_later(std::move(views));
   }
 
   [[nodiscard]] RendererInfo info() const override {

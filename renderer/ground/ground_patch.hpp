@@ -74,6 +74,8 @@ class GroundPatchStore {
 
   [[nodiscard]] const terrain::TileSource& tiles() const { return *tiles_; }
   [[nodiscard]] std::size_t held_bytes() const;
+  /// True if patches of another view fit without evicting any.
+  [[nodiscard]] bool has_room() const { return held_bytes() < budget_bytes_ / 5 * 4; }
 
  private:
   struct Hash {

@@ -73,7 +73,7 @@ struct VideoChain {
 
 /// Time that a preview has for ground that is not in memory: what comes later is drawn from coarser
 /// imagery.
-constexpr std::int64_t kPreviewTileWaitNs = 20'000'000;
+constexpr std::int64_t kPreviewTileWaitNs = 10'000'000;
 
 struct PictureRequest {
   std::string run_id;

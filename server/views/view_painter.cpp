@@ -121,6 +121,12 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   coding.max_width_px = shared->width_px;
   auto picture = encoder_.encode({row.frame, row.t_ns, shared}, coding);
   if (!picture) return picture.error();
+  // After the first picture, so that a jump to any other instant finds its ground sampled.
+  bool& expected = (*view)->runs.front().scenes_expected;
+  if (!request.live && !expected) {
+    expected = true;
+    (*view)->renderer->expect_scenes(scene_views_along(*timeline, settings));
+  }
   if (settings.show.labels) picture->labels = labels_in_view(places, scene, tiles);
   return std::optional(std::move(*picture));
 }

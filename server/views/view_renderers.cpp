@@ -82,7 +82,7 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   WorldView& view = views_.front();
   // A renderer of the factory has its own tiles.
   if (!runs_.renderer_factory()) read_ground(view, run_id);
-  view.runs.push_front({run_id, nullptr});
+  view.runs.push_front({run_id, nullptr, false});
   if (view.runs.size() > kMaxRuns) view.runs.pop_back();
   return &view;
 }

@@ -34,6 +34,7 @@ class ViewRenderers {
     struct Watched {
       std::string run_id;
       std::unique_ptr<FrameRemaker> frames;  ///< null until needed
+      bool scenes_expected = false;          ///< the renderer knows the scenes along the flight
     };
     std::list<Watched> runs;  ///< most recently used first; never empty
   };

@@ -54,6 +54,29 @@ renderer::SceneView scene_view(const SceneSettings& settings,
   return view;
 }
 
+std::vector<renderer::SceneView> scene_views_along(const RunTimeline& timeline,
+                                                   const SceneSettings& settings) {
+  constexpr unsigned kBits = 8;
+  constexpr std::size_t kViews = std::size_t{1} << kBits;
+  const bool follows = settings.mode == SceneMode::kChase || settings.mode == SceneMode::kOnboard ||
+                       (settings.mode != SceneMode::kFree && settings.follow);
+  if (!follows) return {};
+  const FlatGround far_below(-1e6);
+  const std::size_t count = timeline.frame_count();
+  std::vector<renderer::SceneView> views;
+  for (std::size_t i = 0; i < kViews; ++i) {
+    // The bits of i reversed: 0, 1/2, 1/4, 3/4, 1/8, ... of the flight (van der Corput 1935).
+    std::size_t reversed = 0;
+    for (unsigned bit = 0; bit < kBits; ++bit) {
+      reversed = (reversed << 1U) | ((i >> bit) & 1U);
+    }
+    for (const FrameRow& row : timeline.frames(reversed * count / kViews, 1)) {
+      views.push_back(scene_view(settings, row.T_world_body, Eigen::Vector3d::Zero(), far_below));
+    }
+  }
+  return views;
+}
+
 void add_run(const SceneRun& run,
              const SceneShow& show,
              renderer::SceneContent* content,

@@ -29,6 +29,11 @@ struct PlacedLabel {
                                              const Eigen::Vector3d& centre_world,
                                              const HeightQuery& ground);
 
+/// Views along a whole flight, for a viewpoint that follows the aircraft: those far apart first, at
+/// most a few hundred. Not kept above the ground. Empty for other viewpoints.
+[[nodiscard]] std::vector<renderer::SceneView> scene_views_along(const RunTimeline& timeline,
+                                                                 const SceneSettings& settings);
+
 /// A run in a scene.
 struct SceneRun {
   std::string run_id;

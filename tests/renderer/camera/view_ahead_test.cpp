@@ -6,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include "renderer/ground/ground_selection.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
 namespace overfly::renderer {
@@ -27,7 +28,8 @@ class TilesAhead : public ::testing::Test {
     };
     tiles_ = std::make_shared<overfly::testing::ProceduralGround>(options);
     store_ = std::make_shared<TileStore>(tiles_, TileStoreOptions{});
-    ahead_ = std::make_unique<ViewAhead>(store_, std::make_shared<GroundPatchStore>(tiles_));
+    patches_ = std::make_shared<GroundPatchStore>(tiles_, kPatchBytes);
+    ahead_ = std::make_unique<ViewAhead>(store_, patches_);
   }
   ~TilesAhead() override { held_back_ = false; }
 
@@ -37,6 +39,17 @@ class TilesAhead : public ::testing::Test {
     CameraRequest request = CameraRequest::still(camera, pose, t_ns, PixelFormat::kGrey8);
     request.velocity_world_m_s = {east_m_s, 0.0, 0.0};
     return request;
+  }
+  static View view_from(const Eigen::Vector2d& from) {
+    const CameraRequest request = flying(from, 0.0, 0);
+    return View::from(request.camera.pinhole(), request.T_world_camera.at(0));
+  }
+  /// Memory of the patches that a view needs beyond those that are sampled.
+  [[nodiscard]] std::size_t missing_bytes(const View& view) const {
+    const std::size_t before = patches_->held_bytes();
+    GroundPatches patches(patches_);
+    (void)select_ground(patches, view, {}, [](const GroundPatch&) {});
+    return patches_->held_bytes() - before;
   }
   void wait() {
     ahead_->wait_until_idle();
@@ -49,6 +62,8 @@ class TilesAhead : public ::testing::Test {
   std::atomic<bool> held_back_{false};
   std::shared_ptr<overfly::testing::ProceduralGround> tiles_;
   std::shared_ptr<TileStore> store_;
+  static constexpr std::size_t kPatchBytes = std::size_t{2} << 20U;
+  std::shared_ptr<GroundPatchStore> patches_;
   std::unique_ptr<ViewAhead> ahead_;
 };
 
@@ -100,6 +115,31 @@ TEST_F(TilesAhead, AreReadForAllCamerasOfOneTime) {
   wait();
   EXPECT_TRUE(held({0, 1, 4}) && held({1, 0, 2})) << "the first camera's";
   EXPECT_TRUE(held({0, 6, 4}) && held({1, 3, 2})) << "the second camera's";
+}
+
+TEST_F(TilesAhead, GroundOfViewsThatMayFollowIsSampledAndNoTileRead) {
+  const View first = view_from({-600.0, -100.0});
+  const View second = view_from({600.0, -100.0});
+  ahead_->expect_later({first, second});
+  wait();
+  EXPECT_EQ(missing_bytes(first), 0U);
+  EXPECT_EQ(missing_bytes(second), 0U);
+  EXPECT_GT(missing_bytes(view_from({0.0, 700.0})), 0U) << "of another view";
+  EXPECT_EQ(tiles_->tiles_read(), 0);
+}
+
+TEST_F(TilesAhead, GroundOfViewsThatMayFollowLeavesRoomForOthers) {
+  std::vector<View> views;
+  for (double east_m = -900.0; east_m < 900.0; east_m += 30.0) {
+    for (double north_m = -900.0; north_m < 900.0; north_m += 30.0) {
+      views.push_back(view_from({east_m, north_m}));
+    }
+  }
+  ahead_->expect_later(views);
+  wait();
+  EXPECT_FALSE(patches_->has_room());
+  EXPECT_LT(patches_->held_bytes(), kPatchBytes) << "nothing was evicted";
+  EXPECT_GT(missing_bytes(views.back()), 0U) << "sampled although there was no room";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "renderer/renderer.hpp"
 
@@ -23,6 +24,9 @@ class WrappedRenderer : public renderer::Renderer {
   Result<Image> render_scene(const renderer::SceneView& view,
                              const renderer::SceneContent& content) override {
     return inner_->render_scene(view, content);
+  }
+  void expect_scenes(const std::vector<renderer::SceneView>& views) override {
+    inner_->expect_scenes(views);
   }
   renderer::RendererInfo info() const override { return inner_->info(); }
 

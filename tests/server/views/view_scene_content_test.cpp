@@ -3,11 +3,14 @@
 
 #include <future>
 #include <utility>
+#include <vector>
 
+#include "renderer/viewpoint.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/map_points.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/views/view_ribbons.hpp"
+#include "server/views/view_scene.hpp"
 #include "server/views/view_service.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 #include "tests/server/support/wrapped_renderer.hpp"
@@ -15,19 +18,25 @@
 namespace overfly::server {
 namespace {
 
-/// Draws nothing and keeps the contents of the last scene.
+/// Draws nothing and keeps the contents of the last scene and the scenes that may follow.
 class SceneWitness final : public testing::WrappedRenderer {
  public:
-  SceneWitness(std::unique_ptr<renderer::Renderer> inner, renderer::SceneContent& content)
-      : WrappedRenderer(std::move(inner)), content_(content) {}
+  SceneWitness(std::unique_ptr<renderer::Renderer> inner,
+               renderer::SceneContent& content,
+               std::vector<std::vector<renderer::SceneView>>& expected)
+      : WrappedRenderer(std::move(inner)), content_(content), expected_(expected) {}
   Result<Image> render_scene(const renderer::SceneView& view,
                              const renderer::SceneContent& content) override {
     content_ = content;
     return inner().render_scene(view, content);
   }
+  void expect_scenes(const std::vector<renderer::SceneView>& views) override {
+    expected_.push_back(views);
+  }
 
  private:
   renderer::SceneContent& content_;
+  std::vector<std::vector<renderer::SceneView>>& expected_;
 };
 
 class ViewSceneContentTest : public testing::ManagerTest {
@@ -36,8 +45,8 @@ class ViewSceneContentTest : public testing::ManagerTest {
     RunManagerOptions watched = options();
     watched.renderer_factory = [this](std::shared_ptr<const terrain::TileSource> tiles)
         -> Result<std::unique_ptr<renderer::Renderer>> {
-      std::unique_ptr<renderer::Renderer> witness =
-          std::make_unique<SceneWitness>(renderer::create_noop_renderer(std::move(tiles)), content);
+      std::unique_ptr<renderer::Renderer> witness = std::make_unique<SceneWitness>(
+          renderer::create_noop_renderer(std::move(tiles)), content, expected);
       return witness;
     };
     return std::move(RunManager::create(watched).value());
@@ -81,6 +90,7 @@ class ViewSceneContentTest : public testing::ManagerTest {
   }
 
   renderer::SceneContent content;  ///< of the last scene, written before its answer
+  std::vector<std::vector<renderer::SceneView>> expected;  ///< by call; likewise
 };
 
 TEST_F(ViewSceneContentTest, HasTheTracksOfOtherRunsAtTheirOwnTimes) {
@@ -188,6 +198,40 @@ TEST_F(ViewSceneContentTest, TellsWhereTheAircraftAre) {
   for (const SceneLabel& label : labels_of(*runs, request)) {
     EXPECT_FALSE(label.estimator.empty()) << "not of the aircraft that one is in";
   }
+}
+
+TEST_F(ViewSceneContentTest, PreparesTheScenesOfTheWholeFlightOnce) {
+  const auto runs = watched_runs();
+  const std::string id = fly(*runs);
+  const auto timeline = runs->timeline(id).value();
+  ViewService views(*runs);
+  const auto draw = [&](const PictureRequest& request) {
+    std::promise<Result<Picture>> answer;
+    views.request(1, 1, request, [&](Result<Picture> picture) { answer.set_value(picture); });
+    ASSERT_TRUE(answer.get_future().get().ok());
+  };
+  PictureRequest request = scene_of(id, 4);
+  request.scene.mode = SceneMode::kOnboard;
+  request.scene.width_px = 320;
+  draw(request);
+  request.scene.azimuth_rad = 1.0;
+  draw(request);
+  ASSERT_EQ(expected.size(), 1U) << "not again for each change of the view";
+  const std::vector<renderer::SceneView>& along = expected.front();
+  ASSERT_EQ(along.size(), 256U);
+  const std::size_t count = timeline->frame_count();
+  const auto at = [&](std::size_t frame) {
+    const FrameRow row = timeline->frames(frame, 1).front();
+    return renderer::onboard_viewpoint(row.T_world_body, 0.0, 0.4).translation;
+  };
+  EXPECT_EQ(along[0].width_px, 320);
+  EXPECT_LT((along[0].T_world_camera.translation - at(0)).norm(), 1e-9);
+  EXPECT_LT((along[1].T_world_camera.translation - at(count / 2)).norm(), 1e-9);
+  EXPECT_LT((along[2].T_world_camera.translation - at(count / 4)).norm(), 1e-9);
+  EXPECT_LT((along[3].T_world_camera.translation - at(3 * count / 4)).norm(), 1e-9);
+  request.scene.mode = SceneMode::kTop;
+  request.scene.follow = false;
+  EXPECT_TRUE(scene_views_along(*timeline, request.scene).empty()) << "does not move";
 }
 
 }  // namespace

@@ -48,10 +48,7 @@ export abstract class PicturePanel implements View {
       'All',
     );
     this.panel.tools.append(this.all);
-    new ResizeObserver(() => {
-      this.arrange();
-      this.wish();
-    }).observe(this.grid);
+    new ResizeObserver(() => this.arrange()).observe(this.grid);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -117,7 +114,7 @@ export abstract class PicturePanel implements View {
     this.views.clear();
     for (const id of ids) {
       const known = before.get(id);
-      this.views.set(id, known ?? new PictureView(this.context, this.title));
+      this.views.set(id, known ?? new PictureView(this.context, this.title, () => this.wish()));
       before.delete(id);
     }
     for (const gone of before.values()) gone.leave();
@@ -138,7 +135,6 @@ export abstract class PicturePanel implements View {
       if (size > best.size) best = { columns, size };
     }
     this.grid.style.gridTemplateColumns = `repeat(${best.columns}, minmax(0, 1fr))`;
-    for (const view of this.views.values()) view.place();
   }
 
   private wish(): void {
@@ -146,7 +142,7 @@ export abstract class PicturePanel implements View {
     const streams = this.shownRuns(state).flatMap((watched): PictureStream[] => {
       const cell = this.streamOf(watched);
       const view = this.views.get(watched.id);
-      if (cell === null || view === undefined || view.root.clientWidth === 0) return [];
+      if (cell === null || view === undefined || view.width_px === 0) return [];
       return [{ run: watched.id, ...cell.stream, max_width_px: view.width_px }];
     });
     this.context.session.want(this.name, streams);

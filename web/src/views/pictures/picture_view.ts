@@ -57,10 +57,13 @@ export class PictureView {
   private drawn: Picture | null = null;
   /** Where the mouse points, in the area; null = elsewhere. */
   private pointed: Point | null = null;
+  /** Kept by an observer: reading a size from the element would cause a layout for each picture. */
+  private area: Size = { width: 0, height: 0 };
 
   constructor(
     private readonly context: Context,
     label: string,
+    onResized: () => void,
   ) {
     this.root = h(
       'div',
@@ -79,7 +82,11 @@ export class PictureView {
       this.empty,
     );
     this.listen();
-    new ResizeObserver(() => this.place()).observe(this.root);
+    new ResizeObserver(() => {
+      this.area = { width: this.root.clientWidth, height: this.root.clientHeight };
+      this.place();
+      onResized();
+    }).observe(this.root);
   }
 
   /** @param cursor_ns  of the run, while the playback stands still */
@@ -134,18 +141,15 @@ export class PictureView {
     this.showHover();
   }
 
-  /** The width of a picture that has enough pixels for the place where it is shown. */
+  /** The width of a picture that has enough pixels for the place where it is shown; 0 = it is not shown. */
   get width_px(): number {
+    if (this.area.width === 0) return 0;
     return widthWanted(this.area, this.zoom, window.devicePixelRatio);
   }
 
   leave(): void {
     if (this.pointed !== null) this.context.probe.point(null);
     this.pointed = null;
-  }
-
-  private get area(): Size {
-    return { width: this.root.clientWidth, height: this.root.clientHeight };
   }
 
   private get zoom(): Zoom {

@@ -24,6 +24,11 @@ const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
+/** Width of the plotting area, from uPlot's own numbers: asking the element causes a layout. */
+function plotWidth_px(plot: uPlot): number {
+  return plot.bbox.width / uPlot.pxRatio;
+}
+
 function crowding(curves: PlotSpec['curves']): string {
   if (curves.length > kMostReadouts) return '';
   const named = curves.some(({ short }) => short !== '');
@@ -74,7 +79,7 @@ export class Plot {
   /** Draws the curves as they are now in a span of time. */
   draw(span_s: Span): void {
     const { curves, least } = this.spec;
-    const pixels = Math.max(100, this.plot.over.clientWidth);
+    const pixels = Math.max(100, plotWidth_px(this.plot));
     this.span_s = span_s;
     this.lines = curves.map(({ curve }) => {
       const now = curve();
@@ -173,7 +178,7 @@ export class Plot {
 
   private placeCursor(plot: uPlot): void {
     const x = this.cursor_s === null ? -1 : plot.valToPos(this.cursor_s, 'x');
-    const visible = x >= 0 && x <= plot.over.clientWidth;
+    const visible = x >= 0 && x <= plotWidth_px(plot);
     this.cursor.style.visibility = visible ? 'visible' : 'hidden';
     if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }

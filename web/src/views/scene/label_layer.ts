@@ -7,7 +7,7 @@ import type { State } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
 import type { Picture } from '../../store/watched_run';
 import { estimateColour, kTruthColour } from '../colours';
-import { h } from '../dom';
+import { h, rebuild } from '../dom';
 
 export interface LabelText {
   text: string;
@@ -29,43 +29,67 @@ export function labelText(state: State, label: SceneLabel): LabelText | null {
   return { text: `${track.label}${error}`, colour };
 }
 
+interface PlacedLabel extends LabelText {
+  /** What it belongs to, in the layer. */
+  x: number;
+  y: number;
+}
+
+/** Padding and border of .scene-label, beside its text. */
+const kFrame_px = 15;
+/** Line height of .scene-label. */
+const kHeight_px = 16;
+
 export class LabelLayer {
   readonly root = h('div', { class: 'scene-labels', 'aria-hidden': 'true' });
+  /** Kept by an observer, and texts measured on a canvas: asking elements causes a layout per picture. */
+  private size = { width: 0, height: 0 };
+  private readonly pen = h('canvas').getContext('2d');
+  private drawn: { state: State; picture: Picture | null } | null = null;
+
+  constructor() {
+    new ResizeObserver(() => {
+      this.size = { width: this.root.clientWidth, height: this.root.clientHeight };
+      if (this.pen !== null) this.pen.font = `11px ${getComputedStyle(this.root).fontFamily}`;
+      if (this.drawn !== null) this.draw(this.drawn.state, this.drawn.picture);
+    }).observe(this.root);
+  }
 
   draw(state: State, picture: Picture | null): void {
-    const { clientWidth: width, clientHeight: height } = this.root;
-    if (picture === null || width === 0) {
-      this.root.replaceChildren();
-      return;
-    }
+    this.drawn = { state, picture };
+    const labels = picture === null || this.size.width === 0 ? [] : this.placed(state, picture);
+    rebuild(this.root, JSON.stringify([this.size, labels]), () => this.elements(labels));
+  }
+
+  private placed(state: State, picture: Picture): PlacedLabel[] {
     const size = { width: picture.width_px, height: picture.height_px };
-    const rect = placed({ width, height }, size, kWholePicture);
-    const entries = picture.labels.flatMap((label) => {
+    const rect = placed(this.size, size, kWholePicture);
+    return picture.labels.flatMap((label) => {
       const text = labelText(state, label);
       if (text === null) return [];
-      const element = h(
-        'span',
-        { class: 'scene-label', style: `border-color:${text.colour}` },
-        text.text,
-      );
       const x = rect.x + ((label.x_px + 0.5) / size.width) * rect.width;
       const y = rect.y + ((label.y_px + 0.5) / size.height) * rect.height;
-      return [{ element, x, y, colour: text.colour }];
+      return [{ ...text, x, y }];
     });
-    this.root.replaceChildren(...entries.map(({ element }) => element));
-    const boxes = entries.map(({ element, x, y }) => ({
+  }
+
+  private elements(labels: readonly PlacedLabel[]): HTMLElement[] {
+    const boxes = labels.map(({ text, x, y }) => ({
       x,
       y,
-      width: element.offsetWidth,
-      height: element.offsetHeight,
+      width: kFrame_px + Math.ceil(this.pen?.measureText(text).width ?? 0),
+      height: kHeight_px,
     }));
-    placeLabels(boxes, { width, height }).forEach(({ left, top }, i) => {
-      const [entry, box] = [entries[i], boxes[i]];
-      if (entry === undefined || box === undefined) return;
-      entry.element.style.left = `${left}px`;
-      entry.element.style.top = `${top}px`;
-      this.root.append(leader(left + box.width / 2, top + box.height, entry));
+    const names: HTMLElement[] = [];
+    const leaders: HTMLElement[] = [];
+    placeLabels(boxes, this.size).forEach(({ left, top }, i) => {
+      const [label, box] = [labels[i], boxes[i]];
+      if (label === undefined || box === undefined) return;
+      const style = `left:${left}px;top:${top}px;border-color:${label.colour}`;
+      names.push(h('span', { class: 'scene-label', style }, label.text));
+      leaders.push(leader(left + box.width / 2, top + box.height, label));
     });
+    return [...names, ...leaders];
   }
 }
 
