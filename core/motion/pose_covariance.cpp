@@ -36,20 +36,16 @@ double inverse_deviation(double variance) {
 
 /// The error in standard deviations: with the correlations C = D^-1/2 P D^-1/2 = L L^T, whose
 /// factor does not suffer from the different units, it is L^-1 D^-1/2 e.
-template <int N>
-std::optional<double> squared_norm(const Eigen::Matrix<double, N, 1>& error,
-                                   const Eigen::Matrix<double, N, N>& covariance) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  const Vector scale = covariance.diagonal().unaryExpr(&inverse_deviation);
-  const Matrix correlations = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const Eigen::LLT<Matrix> factor(correlations);
+std::optional<double> squared_norm(const Eigen::VectorXd& error,
+                                   const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().unaryExpr(&inverse_deviation);
+  const Eigen::MatrixXd correlations = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlations);
   if (factor.info() != Eigen::Success) return std::nullopt;
-  const Matrix L = factor.matrixL();
-  if (L.diagonal().array().square().minCoeff() < kSmallestPivot) return std::nullopt;
-  const Vector deviations =
-      L.template triangularView<Eigen::Lower>().solve(Vector(scale.cwiseProduct(error)));
-  const double squared = deviations.squaredNorm();
+  const auto L = factor.matrixL();
+  if (factor.matrixLLT().diagonal().array().square().minCoeff() < kSmallestPivot)
+    return std::nullopt;
+  const double squared = L.solve(scale.cwiseProduct(error)).squaredNorm();
   return std::isfinite(squared) ? std::optional<double>(squared) : std::nullopt;
 }
 
@@ -169,11 +165,11 @@ Matrix6d inverted_covariance(const Pose& T_a_b, const Matrix6d& covariance) {
 
 std::optional<double> squared_deviation(const Eigen::Vector3d& error,
                                         const Eigen::Matrix3d& covariance) {
-  return squared_norm<3>(error, covariance);
+  return squared_norm(error, covariance);
 }
 
 std::optional<double> squared_deviation(const Vector6d& error, const Matrix6d& covariance) {
-  return squared_norm<6>(error, covariance);
+  return squared_norm(error, covariance);
 }
 
 }  // namespace overfly
