@@ -206,7 +206,8 @@ class Renderer {
   [[nodiscard]] virtual Result<Image> render_scene(const SceneView& view,
                                                    const SceneContent& content) = 0;
   /// Tells which scene views may be drawn later: their ground is sampled in the background, the
-  /// first view first, as long as there is room. Replaces the views told before. Changes no image.
+  /// first view first, as long as there is room. Replaces the views told before. Views that
+  /// render_scene would refuse are left out. Changes no image.
   virtual void expect_scenes(const std::vector<SceneView>& /*views*/) {}
   [[nodiscard]] virtual RendererInfo info() const = 0;
 };

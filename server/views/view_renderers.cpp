@@ -36,7 +36,11 @@ ViewRenderers::WorldView* ViewRenderers::known_view(const std::string& run_id) {
     const auto watched = std::find_if(view->runs.begin(), view->runs.end(), [&](const auto& run) {
       return run.run_id == run_id;
     });
-    if (watched == view->runs.end() || !view->world->tiles->status()) continue;
+    if (watched == view->runs.end()) continue;
+    if (!view->world->tiles->status()) {
+      damaged_run_id_ = run_id;
+      continue;
+    }
     view->runs.splice(view->runs.begin(), view->runs, watched);
     views_.splice(views_.begin(), views_, view);
     return &views_.front();
@@ -81,8 +85,8 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   }
   WorldView& view = views_.front();
   // A renderer of the factory has its own tiles.
-  if (!runs_.renderer_factory()) read_ground(view, run_id);
-  view.runs.push_front({run_id, nullptr, false});
+  if (!runs_.renderer_factory() && damaged_run_id_ != run_id) read_ground(view, run_id);
+  view.runs.push_front({run_id, nullptr, damaged_run_id_ == run_id});
   if (view.runs.size() > kMaxRuns) view.runs.pop_back();
   return &view;
 }

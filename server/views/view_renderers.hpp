@@ -34,7 +34,7 @@ class ViewRenderers {
     struct Watched {
       std::string run_id;
       std::unique_ptr<FrameRemaker> frames;  ///< null until needed
-      bool scenes_expected = false;          ///< the renderer knows the scenes along the flight
+      bool scenes_expected = false;  ///< the renderer knows the scenes along it, or must not
     };
     std::list<Watched> runs;  ///< most recently used first; never empty
   };
@@ -63,6 +63,9 @@ class ViewRenderers {
   const std::atomic<bool>& stopping_;
   std::string scenario_run_id_;  ///< the run whose scenario was read last
   std::optional<Scenario> scenario_;
+  /// The run whose files could not be read the last time: nothing is read ahead for it, which would
+  /// meet the damage again although no picture shows it.
+  std::string damaged_run_id_;
   std::list<WorldView> views_;  ///< most recently used first
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -170,6 +171,20 @@ TEST_F(SceneView, ViewpointsStayAboveTheGround) {
   const Pose camera = orbit_viewpoint({0, 0, 20}, {0.0, -0.5, 100.0, 2.0}, *tiles_);
   EXPECT_GE(camera.translation.z(),
             tiles_->ground_up_m(camera.translation.x(), camera.translation.y()) + 2.0);
+}
+
+TEST_F(SceneView, IsTheSameWhateverViewsAreExpectedAndBadOnesAreLeftOut) {
+  renderer::SceneView view;
+  view.T_world_camera = orbit_viewpoint({0, 0, 20}, {0.0, 0.5, 100.0, 2.0}, *tiles_);
+  const Image before = draw(view.T_world_camera, {});
+  std::vector<renderer::SceneView> expected(5, view);
+  expected[0].T_world_camera.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  expected[1].T_world_camera.translation.y() = 1e300;
+  expected[2].T_world_camera.rotation.coeffs().setZero();
+  expected[3].width_px = -1;
+  renderer_->expect_scenes(expected);
+  EXPECT_EQ(draw(view.T_world_camera, {}).data, before.data);
+  EXPECT_TRUE(tiles_->status().ok());
 }
 
 }  // namespace

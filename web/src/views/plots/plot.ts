@@ -23,12 +23,12 @@ const kZoom_per_px = 0.0015;
 const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
 
-/** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 /** Width of the plotting area, from uPlot's own numbers: asking the element causes a layout. */
 function plotWidth_px(plot: uPlot): number {
   return plot.bbox.width / uPlot.pxRatio;
 }
 
+/** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: PlotSpec['curves']): string {
   if (curves.length > kMostReadouts) return '';
   const named = curves.some(({ short }) => short !== '');
