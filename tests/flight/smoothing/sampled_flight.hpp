@@ -58,7 +58,7 @@ inline Recording record(const Recorder& recorder) {
   for (int i = 0; i < times(recorder.attitude_hz); ++i) {
     const double t_s = i / recorder.attitude_hz;
     const AircraftState state = **attitudes->state_at(ns_from_s(t_s));
-    const Eigen::Vector3d error(noise.draw(), noise.draw(), noise.draw());
+    const Eigen::Vector3d error{noise.draw(), noise.draw(), noise.draw()};
     recording.attitudes.push_back(
         {t_s + recorder.attitude_delay_s,
          R_ned_enu() * state.T_world_body.rotation *

@@ -28,7 +28,7 @@ struct Plan {
 std::vector<std::string> log_of(const Plan& plan) {
   const SyntheticGround ground = SyntheticGround::procedural(1, 1024, 0.8, plan.relief_m);
   const PinholeCamera camera =
-      PinholeCamera::from_fov(640, 480, rad_from_deg(84.872), FovAxis::kHorizontal).value();
+      PinholeCamera::from_fov(480, 360, rad_from_deg(84.872), FovAxis::kHorizontal).value();
   SyntheticFlightOptions options;
   options.straight_s = 1.5;
   options.hold_s = 0.3;

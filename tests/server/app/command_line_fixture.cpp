@@ -6,8 +6,6 @@
 
 namespace overfly::testing {
 
-using Json = nlohmann::json;
-
 void CommandLine::SetUpTestSuite() {
   folder_ = new TemporaryFolder();
   const Outcome made = overfly_program({"world",
@@ -21,9 +19,9 @@ void CommandLine::SetUpTestSuite() {
                                         "--seed",
                                         "3"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Json doctor = Json::parse(overfly_program({"doctor", "--json"}).out);
+  const nlohmann::json doctor = nlohmann::json::parse(overfly_program({"doctor", "--json"}).out);
   draws_ = doctor.at("checks").at(0).at("level") == "ok";
-  const Json scenario = {{"format_version", 1},
+  const nlohmann::json scenario = {{"format_version", 1},
                          {"world", {{"manifest", world() + "/world.json"}}},
                          {"flight", {{"course", {{"length_m", 800}, {"leg_length_m", 300}}}}},
                          {"duration_s", 1},
