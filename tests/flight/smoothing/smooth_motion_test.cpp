@@ -80,8 +80,8 @@ TEST(SmoothMotion, IsCloseToTheTruthOfANoisyFlight) {
 }
 
 class ErraticFlight : public ::testing::TestWithParam<std::uint64_t> {};
-// Seeds 1 to 20 give 0.05 to 0.17 m and 0.01 to 0.14 deg from the flight without jumps, and yaw steps of 24.4
-// to 26.1 deg.
+// Seeds 1 to 20 give 0.05 to 0.17 m and 0.01 to 0.14 deg from the flight without jumps, and yaw
+// steps of 24.4 to 26.1 deg.
 INSTANTIATE_TEST_SUITE_P(Seeds, ErraticFlight, ::testing::Values(7, 10, 14));
 
 TEST_P(ErraticFlight, IsSmoothedAsIfItHadNoJumps) {

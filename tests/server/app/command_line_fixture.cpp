@@ -21,12 +21,13 @@ void CommandLine::SetUpTestSuite() {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const nlohmann::json doctor = nlohmann::json::parse(overfly_program({"doctor", "--json"}).out);
   draws_ = doctor.at("checks").at(0).at("level") == "ok";
-  const nlohmann::json scenario = {{"format_version", 1},
-                         {"world", {{"manifest", world() + "/world.json"}}},
-                         {"flight", {{"course", {{"length_m", 800}, {"leg_length_m", 300}}}}},
-                         {"duration_s", 1},
-                         {"camera", {{"width_px", 160}, {"height_px", 120}, {"rate_hz", 10}}},
-                         {"estimators", {{{"name", "perfect"}, {"type", "perfect"}}}}};
+  const nlohmann::json scenario = {
+      {"format_version", 1},
+      {"world", {{"manifest", world() + "/world.json"}}},
+      {"flight", {{"course", {{"length_m", 800}, {"leg_length_m", 300}}}}},
+      {"duration_s", 1},
+      {"camera", {{"width_px", 160}, {"height_px", 120}, {"rate_hz", 10}}},
+      {"estimators", {{{"name", "perfect"}, {"type", "perfect"}}}}};
   write_text(scenario_file(), scenario.dump());
 }
 
