@@ -8,19 +8,14 @@
 macro(overfly_compile_with_clang)
   find_program(OVERFLY_CLANG clang++)
   if(OVERFLY_CLANG AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT OVERFLY_SANITIZE)
-    if(NOT DEFINED OVERFLY_CLANG_WORKS)
-      # clang looks for GCC's standard library by itself and may find a version without headers.
-      file(WRITE ${CMAKE_BINARY_DIR}/clang_works.cpp "#include <ranges>\n#include <span>\n#include <vector>\n")
-      execute_process(COMMAND ${OVERFLY_CLANG} -std=c++20 -fsyntax-only ${CMAKE_BINARY_DIR}/clang_works.cpp
-                      RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
-      if(failed)
-        message(STATUS "${OVERFLY_CLANG} finds no standard library; the tests are compiled by GCC")
-        set(OVERFLY_CLANG_WORKS OFF CACHE INTERNAL "")
-      else()
-        set(OVERFLY_CLANG_WORKS ON CACHE INTERNAL "")
-      endif()
-    endif()
-    if(OVERFLY_CLANG_WORKS)
+    # Asked each time: clang may have been removed, and it looks for GCC's standard library by itself, of which
+    # it may find a version without headers.
+    file(WRITE ${CMAKE_BINARY_DIR}/clang_works.cpp "#include <ranges>\n#include <span>\n#include <vector>\n")
+    execute_process(COMMAND ${OVERFLY_CLANG} -std=c++20 -fsyntax-only ${CMAKE_BINARY_DIR}/clang_works.cpp
+                    RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+    if(failed)
+      message(STATUS "${OVERFLY_CLANG} does not work with the standard library; GCC compiles the tests")
+    else()
       set(CMAKE_CXX_COMPILER_ID Clang)
       set(CMAKE_CXX_COMPILE_OBJECT "${OVERFLY_CLANG} <DEFINES> <INCLUDES> <FLAGS> -o <OBJECT> -c <SOURCE>")
       # As in CMake's own Compiler/Clang.cmake.

@@ -163,7 +163,7 @@ Image SyntheticGround::render(const CameraModel& camera_model,
           const double before_m = ground_m;
           ground_m = height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y());
           along = (ground_m - eye.z()) / ray.z();
-          if (std::abs(ground_m - before_m) < 0.01) break;  // a hundredth of a pixel
+          if (std::abs(ground_m - before_m) < 1e-3) break;
         }
       }
       // The footprint of a pixel, mean of along and across the slope.

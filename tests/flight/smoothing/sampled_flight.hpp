@@ -19,6 +19,14 @@ inline std::unique_ptr<TruthSource> true_course() {
   return std::move(fly_course({}, std::make_shared<FlatGround>(0.0))).value();
 }
 
+/// Three draws, the last component first. The arguments of a call are drawn in an order that
+/// depends on the compiler.
+inline Eigen::Vector3d noise_vector(NormalNoise& noise) {
+  const double z = noise.draw();
+  const double y = noise.draw();
+  return {noise.draw(), y, z};
+}
+
 /// From east-north-up to north-east-down and back.
 inline Eigen::Quaterniond R_ned_enu() {
   constexpr double kHalfRoot = 0.70710678118654752440;
@@ -50,15 +58,14 @@ inline Recording record(const Recorder& recorder) {
   for (int i = 0; i < times(recorder.position_hz); ++i) {
     const double t_s = i / recorder.position_hz;
     const AircraftState state = **positions->state_at(ns_from_s(t_s));
-    const Eigen::Vector3d error(noise.draw() * recorder.horizontal_sigma_m,
-                                noise.draw() * recorder.horizontal_sigma_m,
-                                noise.draw() * recorder.vertical_sigma_m);
+    const Eigen::Vector3d error = noise_vector(noise).cwiseProduct(Eigen::Vector3d(
+        recorder.horizontal_sigma_m, recorder.horizontal_sigma_m, recorder.vertical_sigma_m));
     recording.positions.push_back({t_s, state.T_world_body.translation + error});
   }
   for (int i = 0; i < times(recorder.attitude_hz); ++i) {
     const double t_s = i / recorder.attitude_hz;
     const AircraftState state = **attitudes->state_at(ns_from_s(t_s));
-    const Eigen::Vector3d error{noise.draw(), noise.draw(), noise.draw()};
+    const Eigen::Vector3d error = noise_vector(noise);
     recording.attitudes.push_back(
         {t_s + recorder.attitude_delay_s,
          R_ned_enu() * state.T_world_body.rotation *

@@ -124,14 +124,12 @@ std::vector<Json> other_values() {
           Json::array({nullptr, Json::object()})};
 }
 
-/// The document without each of its fields, and with two of `values` in each one's place.
 std::vector<Json> mutations_of(const Json& document, const std::vector<Json>& values) {
   std::vector<Json> mutations;
-  std::size_t next = 0;
   for (const Json::json_pointer& pointer : pointers_of(document)) {
-    for (int i = 0; i < 2; ++i) {
+    for (const Json& value : values) {
       Json changed = document;
-      changed[pointer] = values[next++ % values.size()];
+      changed[pointer] = value;
       mutations.push_back(std::move(changed));
     }
     Json without = document;
