@@ -53,7 +53,7 @@ FrameCaster::FrameCaster(std::shared_ptr<const terrain::TileSource> tiles,
                          const RaycastOptions& options)
     : tiles_(std::move(tiles)),
       pool_(options.threads),
-      kernel_(options.kernel != nullptr ? options.kernel : best_sample_kernel()),
+      kernel_(options.kernel != nullptr ? *options.kernel : best_sample_kernel()),
       field_(tiles_),
       texels_(chosen_store(tiles_, options), options.tile_cache_bytes) {}
 

@@ -23,7 +23,7 @@ class FrameCaster {
   [[nodiscard]] Result<CameraFrame> draw(const CameraRequest& request);
   [[nodiscard]] DepthImage depth(const CameraRequest& request);
   [[nodiscard]] int threads() const { return pool_.threads(); }
-  [[nodiscard]] SampleKernel kernel() const { return kernel_; }
+  [[nodiscard]] const SampleKernel& kernel() const { return kernel_; }
 
  private:
   /// Data shared by the steps of drawing one frame.
@@ -49,7 +49,7 @@ class FrameCaster {
 
   std::shared_ptr<const terrain::TileSource> tiles_;
   WorkerPool pool_;
-  SampleKernel kernel_;
+  const SampleKernel& kernel_;
   HeightField field_;
   TexelTiles texels_;
   std::list<RayGrid> rays_;                         // of recently drawn cameras, most recent first

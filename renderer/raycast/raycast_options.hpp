@@ -13,7 +13,7 @@ struct RaycastOptions {
   std::size_t tile_cache_bytes = std::size_t{256} << 20U;
   std::shared_ptr<TileStore> tile_store;  ///< null = a private one
   int threads = 0;                        ///< 0 = one per core, at most 8
-  SampleKernel kernel = nullptr;          ///< null = the fastest
+  const SampleKernel* kernel = nullptr;   ///< null = the fastest
 };
 
 }  // namespace overfly::renderer::raycast

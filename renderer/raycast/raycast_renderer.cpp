@@ -36,7 +36,7 @@ class RaycastRenderer final : public Renderer {
     RendererInfo info;
     info.backend = "raycast";
     info.device = "CPU, " + std::to_string(caster_.threads()) +
-                  (caster_.threads() == 1 ? " thread, " : " threads, ") + name_of(caster_.kernel());
+                  (caster_.threads() == 1 ? " thread, " : " threads, ") + caster_.kernel().name;
     info.gl_version = "none";
     info.software = true;
     return info;

@@ -1,6 +1,7 @@
 #include "renderer/raycast/paint/painter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace overfly::renderer::raycast {
@@ -48,9 +49,32 @@ void add_sums(const Block& block, const float* values, const Canvas& canvas) {
                  (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
     for (int c = 0; c < kChannels; ++c) {
       const float* row = values + c * kBlockPixels + y * kBlockSide;
-      for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] += canvas.weight * row[x];
+      if (block.columns == kBlockSide) {
+        for (int x = 0; x < kBlockSide; ++x) out[x * kChannels + c] += canvas.weight * row[x];
+      } else {
+        for (int x = 0; x < block.columns; ++x) out[x * kChannels + c] += canvas.weight * row[x];
+      }
     }
   }
+}
+
+/// The block's place in its tile, moved by a part of a pixel.
+TexelBlock texels_of(const Block& block, const terrain::TileId& tile, float x, float y) {
+  const float per_texel = std::ldexp(1.0F, -tile.level);
+  const double side = static_cast<double>(terrain::kTileTexels) * (1 << tile.level);
+  TexelBlock texels;
+  texels.columns = block.columns;
+  texels.rows = block.rows;
+  texels.u0 = static_cast<float>((block.u - tile.col * side) * per_texel) +
+              static_cast<float>(terrain::kTileBorder);
+  texels.v0 = static_cast<float>((block.v - tile.row * side) * per_texel) +
+              static_cast<float>(terrain::kTileBorder);
+  texels.numerator_u = moved_and_scaled(block.numerator_u, x, y, per_texel);
+  texels.numerator_v = moved_and_scaled(block.numerator_v, x, y, per_texel);
+  texels.inverse_depth = moved_and_scaled(block.inverse_depth, x, y, 1.0F);
+  texels.lod = moved_and_scaled(block.lod, x, y, 1.0F);
+  texels.lod[0] -= static_cast<float>(tile.level);
+  return texels;
 }
 
 using Put = void (*)(const Block& block, const float* values, const Canvas& canvas);
@@ -62,7 +86,7 @@ Put put_of(const Canvas& canvas) {
 
 }  // namespace
 
-Painter::Painter(const CameraRequest& request, SampleKernel kernel)
+Painter::Painter(const CameraRequest& request, const SampleKernel& kernel)
     : kernel_(kernel),
       colours_(SceneColours::of(request)),
       channels_(channel_count(request.format)),
@@ -74,14 +98,34 @@ void Painter::paint(const Band& band,
                     const std::vector<FoundTile>& tiles,
                     const Canvas& canvas) const {
   const Put put = put_of(canvas);
+  std::array<SamplePlan, 2> plans;
+  const auto plan = [&](std::size_t i) {
+    if (i >= band.blocks.size()) return;
+    const Block& block = band.blocks[i];
+    if (canvas.bytes == nullptr) {
+      // Rows of sums lie on different pages, so that the processor does not read them ahead by
+      // itself.
+      const std::size_t stride = static_cast<std::size_t>(canvas.width_px) * canvas.channels;
+      const float* first = canvas.sums + block.y * stride + std::size_t{block.x} * canvas.channels;
+      for (int y = 0; y < block.rows; ++y) __builtin_prefetch(first + y * stride, 1);
+    }
+    if (!planned(block)) return;
+    const FoundTile& tile = tiles[block.tile];
+    kernel_.plan(texels_of(block, tile.id, 0.0F, 0.0F), *tile.texels, plans[i % 2]);
+  };
+  const auto next_colour = [&](std::size_t i, float* values) {
+    plan(i + 1);
+    colour_of(band.blocks[i], tiles, plans[i % 2], values);
+  };
   float values[kMaxValues] = {};
+  plan(0);
   for (std::size_t i = 0; i < band.blocks.size(); ++i) {
     const Block& block = band.blocks[i];
-    colour_of(block, tiles, values);
+    next_colour(i, values);
     if (block.quarter) {
       float part[kMaxValues];
       for (int k = 1; k < 4; ++k) {
-        colour_of(band.blocks[++i], tiles, part);
+        next_colour(++i, part);
         for (int c = 0; c < channels_; ++c) values[c * kBlockPixels] += part[c * kBlockPixels];
       }
       for (int c = 0; c < channels_; ++c) values[c * kBlockPixels] *= 0.25F;
@@ -90,8 +134,13 @@ void Painter::paint(const Band& band,
   }
 }
 
+bool Painter::planned(const Block& block) const {
+  return block.kind == Block::Kind::kGround && (!reference_ || block.quarter);
+}
+
 void Painter::colour_of(const Block& block,
                         const std::vector<FoundTile>& tiles,
+                        const SamplePlan& plan,
                         float* values) const {
   switch (block.kind) {
     case Block::Kind::kSky:
@@ -100,44 +149,30 @@ void Painter::colour_of(const Block& block,
       fill(block, colours_.nothing, channels_, values);
       break;
     case Block::Kind::kGround:
-      sample(block, tiles[block.tile], values);
+      if (!planned(block)) {
+        sample_four(block, tiles[block.tile], values);
+        break;
+      }
+      kernel_.read(plan, values);
+      if (unit_ == 1.0F) break;
+      for (int c = 0; c < channels_; ++c) {
+        float* plane = values + c * kBlockPixels;
+        for (int i = 0; i < block.rows * kBlockSide; ++i) plane[i] *= unit_;
+      }
       break;
   }
   if (hazy_) haze(block, values);
 }
 
-void Painter::sample(const Block& block, const FoundTile& tile, float* values) const {
-  const float per_texel = std::ldexp(1.0F, -tile.id.level);
-  const double side = static_cast<double>(terrain::kTileTexels) * (1 << tile.id.level);
-  TexelBlock texels;
-  texels.columns = block.columns;
-  texels.rows = block.rows;
-  texels.u0 = static_cast<float>((block.u - tile.id.col * side) * per_texel) +
-              static_cast<float>(terrain::kTileBorder);
-  texels.v0 = static_cast<float>((block.v - tile.id.row * side) * per_texel) +
-              static_cast<float>(terrain::kTileBorder);
-  const auto draw = [&](float x, float y, float* out) {
-    texels.numerator_u = moved_and_scaled(block.numerator_u, x, y, per_texel);
-    texels.numerator_v = moved_and_scaled(block.numerator_v, x, y, per_texel);
-    texels.inverse_depth = moved_and_scaled(block.inverse_depth, x, y, 1.0F);
-    texels.lod = moved_and_scaled(block.lod, x, y, 1.0F);
-    texels.lod[0] -= static_cast<float>(tile.id.level);
-    kernel_(texels, *tile.texels, out);
-  };
-  if (!reference_ || block.quarter) {
-    draw(0.0F, 0.0F, values);
-    if (unit_ == 1.0F) return;
-    for (int c = 0; c < channels_; ++c) {
-      float* plane = values + c * kBlockPixels;
-      for (int i = 0; i < block.rows * kBlockSide; ++i) plane[i] *= unit_;
-    }
-    return;
-  }
+void Painter::sample_four(const Block& block, const FoundTile& tile, float* values) const {
   float taps[4][kMaxValues];
-  draw(-0.25F, -0.25F, taps[0]);
-  draw(0.25F, -0.25F, taps[1]);
-  draw(-0.25F, 0.25F, taps[2]);
-  draw(0.25F, 0.25F, taps[3]);
+  SamplePlan plan;
+  for (int i = 0; i < 4; ++i) {
+    const float x = i % 2 == 0 ? -0.25F : 0.25F;
+    const float y = i < 2 ? -0.25F : 0.25F;
+    kernel_.plan(texels_of(block, tile.id, x, y), *tile.texels, plan);
+    kernel_.read(plan, taps[i]);
+  }
   const float share = 0.25F * unit_;
   for (int c = 0; c < channels_; ++c) {
     for (int i = c * kBlockPixels; i < c * kBlockPixels + block.rows * kBlockSide; ++i) {

@@ -22,18 +22,24 @@ struct Canvas {
 
 class Painter {
  public:
-  Painter(const CameraRequest& request, SampleKernel kernel);
+  Painter(const CameraRequest& request, const SampleKernel& kernel);
 
   /// Paints a row of cells. @param tiles  the tiles found for the band
   void paint(const Band& band, const std::vector<FoundTile>& tiles, const Canvas& canvas) const;
 
  private:
-  /// Values of a block's pixels, by plane, row and column.
-  void colour_of(const Block& block, const std::vector<FoundTile>& tiles, float* values) const;
-  void sample(const Block& block, const FoundTile& tile, float* values) const;
+  /// Whether a block's samples are those of one plan.
+  [[nodiscard]] bool planned(const Block& block) const;
+  /// Values of a block's pixels, by plane, row and column. @param plan  of a planned() block
+  void colour_of(const Block& block,
+                 const std::vector<FoundTile>& tiles,
+                 const SamplePlan& plan,
+                 float* values) const;
+  /// The mean of four samples for each pixel.
+  void sample_four(const Block& block, const FoundTile& tile, float* values) const;
   void haze(const Block& block, float* values) const;
 
-  SampleKernel kernel_;
+  const SampleKernel& kernel_;
   SceneColours colours_;
   int channels_;
   float unit_;  // of the kernel's values

@@ -1,6 +1,7 @@
 // Trilinear samples of a tile over a block of pixels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "renderer/raycast/paint/blocks.hpp"
@@ -27,17 +28,36 @@ struct TexelBlock {
   Bilinear4 lod{};  ///< of the tile's own level
 };
 
-/// Samples a block.
-/// @param out  by plane, then row, then column, kBlockPixels per plane and kBlockSide per row, in
-///             the texels' units. Values right of the block are undefined.
-using SampleKernel = void (*)(const TexelBlock& block, const PackedTile& tile, float* out);
+/// Where the samples of a block lie: what a kernel's first step leaves for its second one.
+struct SamplePlan {
+  /// Of one mip level, by pixel.
+  struct Level {
+    alignas(32) std::array<std::int32_t, kBlockPixels> element;
+    /// Of narrow texels: weights; of wide ones: shares.
+    alignas(32) std::array<std::int32_t, kBlockPixels> down;
+    alignas(32) std::array<std::int32_t, kBlockPixels> across;
+  };
+  TexelBlock block;
+  const PackedTile* tile = nullptr;
+  bool first_mip_only = false;
+  Level fine, coarse;
+  alignas(32) std::array<float, kBlockPixels> between;  ///< share of the coarse level
+};
+
+/// Samples blocks in two steps. Between them the processor reads the texels into its caches: plan
+/// the next block before the samples of this one are read.
+struct SampleKernel {
+  const char* name;
+  /// @param tile  must outlive the plan
+  void (*plan)(const TexelBlock& block, const PackedTile& tile, SamplePlan& plan);
+  /// @param out  by plane, then row, then column, kBlockPixels per plane and kBlockSide per row, in
+  ///             the texels' units. Values right of the block are undefined.
+  void (*read)(const SamplePlan& plan, float* out);
+};
 
 /// The plain kernel; the other kernels must give the same bits.
-void sample_plain(const TexelBlock& block, const PackedTile& tile, float* out);
-
+[[nodiscard]] const SampleKernel& plain_sample_kernel();
 /// The fastest kernel supported by this machine.
-[[nodiscard]] SampleKernel best_sample_kernel();
-/// "avx2" or "plain".
-[[nodiscard]] const char* name_of(SampleKernel kernel);
+[[nodiscard]] const SampleKernel& best_sample_kernel();
 
 }  // namespace overfly::renderer::raycast

@@ -53,9 +53,14 @@ float wide_sample(const std::uint32_t* pairs, const Footprint& at) {
   return left + at.across * (right - left);
 }
 
-}  // namespace
+void plan_plain(const TexelBlock& block, const PackedTile& tile, SamplePlan& plan) {
+  plan.block = block;
+  plan.tile = &tile;
+}
 
-void sample_plain(const TexelBlock& block, const PackedTile& tile, float* out) {
+void read_plain(const SamplePlan& plan, float* out) {
+  const TexelBlock& block = plan.block;
+  const PackedTile& tile = *plan.tile;
   const auto value = [](const Bilinear4& f, float x, float y) {
     return (f[0] + f[2] * y) + (f[1] + f[3] * y) * x;
   };
@@ -85,6 +90,13 @@ void sample_plain(const TexelBlock& block, const PackedTile& tile, float* out) {
       }
     }
   }
+}
+
+}  // namespace
+
+const SampleKernel& plain_sample_kernel() {
+  static constexpr SampleKernel kKernel{"plain", plan_plain, read_plain};
+  return kKernel;
 }
 
 }  // namespace overfly::renderer::raycast

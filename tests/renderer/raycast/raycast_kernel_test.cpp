@@ -40,8 +40,17 @@ TexelBlock random_block(std::mt19937& random) {
   return block;
 }
 
+void sample(const SampleKernel& kernel,
+            const TexelBlock& block,
+            const PackedTile& tile,
+            float* out) {
+  SamplePlan plan;
+  kernel.plan(block, tile, plan);
+  kernel.read(plan, out);
+}
+
 TEST(RaycastKernel, VectorCodeGivesThePlainCodesBits) {
-  if (best_sample_kernel() == sample_plain) GTEST_SKIP() << "this machine has no AVX2";
+  if (&best_sample_kernel() == &plain_sample_kernel()) GTEST_SKIP() << "this machine has no AVX2";
   std::mt19937 random(1);
   for (const PixelFormat format : {PixelFormat::kGrey8,
                                    PixelFormat::kRgb8,
@@ -51,8 +60,8 @@ TEST(RaycastKernel, VectorCodeGivesThePlainCodesBits) {
     for (int i = 0; i < 3000; ++i) {
       const TexelBlock block = random_block(random);
       std::array<float, std::size_t{3} * kBlockPixels> plain{}, fast{};
-      sample_plain(block, tile, plain.data());
-      best_sample_kernel()(block, tile, fast.data());
+      sample(plain_sample_kernel(), block, tile, plain.data());
+      sample(best_sample_kernel(), block, tile, fast.data());
       for (int plane = 0; plane < tile.planes; ++plane) {
         for (int row = 0; row < block.rows; ++row) {
           for (int column = 0; column < block.columns; ++column) {
@@ -103,7 +112,7 @@ TEST(RaycastKernel, PlainCodeSamplesTrilinearlyAndClampsAtTheEdge) {
     for (int i = 0; i < 300; ++i) {
       const TexelBlock block = random_block(random);
       std::array<float, std::size_t{3} * kBlockPixels> plain{};
-      sample_plain(block, tile, plain.data());
+      sample(plain_sample_kernel(), block, tile, plain.data());
       for (int row = 0; row < block.rows; ++row) {
         for (int column = 0; column < block.columns; ++column) {
           const auto value = [&](const Bilinear4& f) {
@@ -151,7 +160,7 @@ TEST(RaycastKernel, NeitherThreadsNorTheKernelChangeAFrame) {
   RaycastOptions plain_options;
   plain_options.tile_store = std::make_shared<TileStore>(tiles, TileStoreOptions{});
   plain_options.threads = 1;
-  plain_options.kernel = sample_plain;
+  plain_options.kernel = &plain_sample_kernel();
   RaycastOptions many_options;
   many_options.tile_store = plain_options.tile_store;
   many_options.threads = 3;
