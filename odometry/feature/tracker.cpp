@@ -127,7 +127,14 @@ TrackResult Tracker::track(const Pyramid& image,
   }
   std::vector<PoseObservation> observations;
   std::vector<int> ids;
-  for (const Projection& projection : project(image, result.T_camera_vo, map)) {
+  const std::vector<Projection> projections = project(image, result.T_camera_vo, map);
+  for (std::size_t i = 0; i < projections.size(); ++i) {
+    if (i + 1 < projections.size()) {
+      const MapPoint& next = *projections[i + 1].point;
+      fetch_patch(map.keyframe(next.source_keyframe).pyramid, next.source_pixel, next.patch_level);
+      fetch_patch(image, projections[i + 1].pixel, next.patch_level);
+    }
+    const Projection& projection = projections[i];
     const MapPoint& point = *projection.point;
     const Keyframe& source = map.keyframe(point.source_keyframe);
     const auto patch = make_template(source.pyramid,

@@ -18,33 +18,43 @@ constexpr float kSettledPx = 0.008F;
 constexpr float kMinEigenvalue = 4.0F;
 constexpr float kMaxTravelPx = 10.0F;
 
-using BorderPatch = std::array<float, static_cast<std::size_t>(kBorder) * kBorder>;
+/// Samples of a line, with some that are not used, so that the compiler computes four at a time.
+constexpr int kLine = (kBorder + 3) / 4 * 4;
 
-/// A line of samples, in steps that the compiler computes several at a time: where they lie, the
-/// four pixels around each, their mean by distance.
+/// Lines of kBorder samples, and room for the unused ones of the last line.
+using BorderPatch =
+    std::array<float, static_cast<std::size_t>(kBorder) * kBorder + kLine - kBorder>;
+
+/// A line of samples, computed in steps: where they lie, the four pixels around each, their mean by
+/// distance.
 struct SampleLine {
-  std::array<float, kBorder> x, y;
+  std::array<float, kLine> x, y;
 
+  /// @param out  kLine values
   void read(const cv::Mat& image, float* out) const {
-    std::array<std::int32_t, kBorder> x0, y0;
-    std::array<float, kBorder> ax, ay, top_left, top_right, bottom_left, bottom_right;
-    for (int i = 0; i < kBorder; ++i) {
+    std::array<std::int32_t, kLine> x0, y0;
+    std::array<float, kLine> ax, ay;
+    for (int i = 0; i < kLine; ++i) {
       x0[i] = static_cast<std::int32_t>(x[i]);
       y0[i] = static_cast<std::int32_t>(y[i]);
       ax[i] = x[i] - static_cast<float>(x0[i]);
       ay[i] = y[i] - static_cast<float>(y0[i]);
     }
+    // The upper two pixels in the low half, the lower two in the high half.
+    std::array<std::uint32_t, kLine> pixels{};
     for (int i = 0; i < kBorder; ++i) {
       const std::uint8_t* top = image.ptr<std::uint8_t>(y0[i]) + x0[i];
       const std::uint8_t* bottom = top + image.step;
-      top_left[i] = top[0];
-      top_right[i] = top[1];
-      bottom_left[i] = bottom[0];
-      bottom_right[i] = bottom[1];
+      pixels[i] = static_cast<std::uint32_t>(top[0] | top[1] << 8) |
+                  static_cast<std::uint32_t>(bottom[0] | bottom[1] << 8) << 16;
     }
-    for (int i = 0; i < kBorder; ++i) {
-      out[i] = (1.0F - ay[i]) * ((1.0F - ax[i]) * top_left[i] + ax[i] * top_right[i]) +
-               ay[i] * ((1.0F - ax[i]) * bottom_left[i] + ax[i] * bottom_right[i]);
+    const auto pixel = [](std::uint32_t four, int i) {
+      return static_cast<float>(static_cast<std::int32_t>(four >> (8 * i) & 255U));
+    };
+    for (int i = 0; i < kLine; ++i) {
+      const std::uint32_t four = pixels[i];
+      out[i] = (1.0F - ay[i]) * ((1.0F - ax[i]) * pixel(four, 0) + ax[i] * pixel(four, 1)) +
+               ay[i] * ((1.0F - ax[i]) * pixel(four, 2) + ax[i] * pixel(four, 3));
     }
   }
 };
@@ -74,7 +84,7 @@ bool sample_warped(const cv::Mat& image,
     const Eigen::Vector2f start = A * left;
     const float depth = 1.0F + g.dot(left);
     SampleLine line;
-    for (int column = 0; column < kBorder; ++column) {
+    for (int column = 0; column < kLine; ++column) {
       const auto step = static_cast<float>(column);
       const float scale = 1.0F / (depth + step * g.x());
       line.x[column] = centre.x() + scale * (start.x() + step * A(0, 0));
@@ -174,12 +184,31 @@ PatchWarp warp_around(const Eigen::Matrix3d& H_source_other, const Eigen::Vector
   return warp;
 }
 
+void fetch_patch(const Pyramid& image, const Eigen::Vector2d& pixel, int level) {
+  if (level >= image.level_count()) return;
+  const cv::Mat& pixels = image.level(level);
+  const Eigen::Vector2d middle = pixel * std::ldexp(1.0, -level);
+  // Negated, so that NaN also counts as outside.
+  if (!(middle.minCoeff() >= 0.0 && middle.x() < pixels.cols && middle.y() < pixels.rows)) return;
+  constexpr int kReach = 3 * kBorder / 4;  // a patch may be turned
+  const int left = std::max(static_cast<int>(middle.x()) - kReach, 0);
+  const int right = std::min(static_cast<int>(middle.x()) + kReach, pixels.cols - 1);
+  const int bottom = std::min(static_cast<int>(middle.y()) + kReach, pixels.rows - 1);
+  for (int y = std::max(static_cast<int>(middle.y()) - kReach, 0); y <= bottom; ++y) {
+    const std::uint8_t* row = pixels.ptr<std::uint8_t>(y);
+    __builtin_prefetch(row + left);
+    __builtin_prefetch(row + right);
+    asm volatile("");  // GCC removes calls of functions that only ask for cache lines.
+  }
+}
+
 std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            const Eigen::Vector2d& source_pixel,
                                            const PatchWarp& warp,
                                            int level) {
+  std::optional<PatchTemplate> result;  // the only value returned, so that none is copied
   const double area = 1.0 / warp.A_source_other.determinant();
-  if (!(area > 0.1 && area < 10.0)) return std::nullopt;
+  if (!(area > 0.1 && area < 10.0)) return result;
   // Source level with the pixel size nearest to that of the searched level.
   const int change = static_cast<int>(std::lround(-0.5 * std::log2(area)));
   const int source_level = std::clamp(level + change, 0, source.level_count() - 1);
@@ -188,10 +217,9 @@ std::optional<PatchTemplate> make_template(const Pyramid& source,
   const Eigen::Vector2f g = (std::ldexp(1.0, level) * warp.g_per_px).cast<float>();
   const Eigen::Vector2f centre = (source_pixel * std::ldexp(1.0, -source_level)).cast<float>();
   BorderPatch sampled;
-  if (!sample_warped(source.level(source_level), centre, A, g, sampled)) return std::nullopt;
-  std::optional<PatchTemplate> result(std::in_place);
-  result->level = level;
-  if (!fill_template(sampled, *result)) return std::nullopt;
+  if (!sample_warped(source.level(source_level), centre, A, g, sampled)) return result;
+  result.emplace().level = level;
+  if (!fill_template(sampled, *result)) result.reset();
   return result;
 }
 

@@ -28,6 +28,9 @@ struct PatchWarp {
 /// A patch as predicted for the searched image, with precomputed values for one alignment step. All
 /// at one pyramid level.
 struct PatchTemplate {
+  // NOLINTNEXTLINE(modernize-use-equals-default): that one would set all vectors to zero.
+  PatchTemplate() {}
+
   int level = 0;
   PatchVector value;  ///< mean removed
   PatchVector gradient_x;
@@ -55,6 +58,11 @@ struct PatchMatch {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< full-resolution pixel
   float correlation = 0.0F;                         ///< normalised, in [-1, 1]
 };
+
+/// Asks for the cache lines of the patch around a pixel, so that the processor does not wait for
+/// them when the patch is sampled a little later. The rows of an image are far apart.
+/// @param pixel  full resolution; outside the image nothing is done
+void fetch_patch(const Pyramid& image, const Eigen::Vector2d& pixel, int level);
 
 /// Samples the patch around `source_pixel` (full resolution), warped into the other view.
 ///
