@@ -130,28 +130,6 @@ bool CellGrid::any_marked(const Eigen::Vector2d& low, const Eigen::Vector2d& hig
   return false;
 }
 
-int hamming_distance(const Descriptor& a, const Descriptor& b) {
-  // Sums of bits in lanes of 4, 8 and 16 bits. std::popcount is a call of a function with a table
-  // unless the program requires a processor with that instruction.
-  constexpr std::uint64_t kPairs = 0x5555555555555555;
-  constexpr std::uint64_t kNibbles = 0x3333333333333333;
-  constexpr std::uint64_t kBytes = 0x0f0f0f0f0f0f0f0f;
-  constexpr std::uint64_t kShorts = 0x00ff00ff00ff00ff;
-  static_assert(std::tuple_size_v<Descriptor> == 4);
-  const auto in_nibbles = [&](std::size_t i) {
-    std::uint64_t bits = a[i] ^ b[i];
-    bits -= (bits >> 1U) & kPairs;
-    return (bits & kNibbles) + ((bits >> 2U) & kNibbles);
-  };
-  const auto in_bytes = [](std::uint64_t nibbles) {
-    return (nibbles & kBytes) + ((nibbles >> 4U) & kBytes);
-  };
-  const std::uint64_t bytes =
-      in_bytes(in_nibbles(0) + in_nibbles(1)) + in_bytes(in_nibbles(2) + in_nibbles(3));
-  const std::uint64_t shorts = (bytes & kShorts) + ((bytes >> 8U) & kShorts);
-  return static_cast<int>((shorts * 0x0001000100010001) >> 48U);
-}
-
 OrbExtractor::OrbExtractor(const FeatureParameters& parameters) : parameters_(parameters) {
   // A level's share is proportional to its side, so that the density of corners per pixel rises
   // slowly.

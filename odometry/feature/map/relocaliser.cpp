@@ -17,8 +17,11 @@ std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
                                           const Map& map) {
   const int oldest = map.newest().id - options.keyframes;
   std::vector<const MapPoint*> points;
+  std::vector<Descriptor> descriptors;  // side by side: each is compared with every corner
   for (const auto& [id, point] : map.points()) {
-    if (point.keyframes.back() >= oldest) points.push_back(&point);
+    if (point.keyframes.back() < oldest) continue;
+    points.push_back(&point);
+    descriptors.push_back(point.descriptor);
   }
   std::vector<PoseObservation> matches;
   for (const Corner& corner : corners) {
@@ -26,12 +29,12 @@ std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
     int best = 257;
     int second = 257;
     const MapPoint* found = nullptr;
-    for (const MapPoint* point : points) {
-      const int distance = hamming_distance(descriptor, point->descriptor);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const int distance = hamming_distance(descriptor, descriptors[i]);
       if (distance < best) {
         second = best;
         best = distance;
-        found = point;
+        found = points[i];
       } else if (distance < second) {
         second = distance;
       }
