@@ -66,7 +66,9 @@ bool sample_warped(const cv::Mat& image,
                    const Eigen::Vector2f& g,
                    BorderPatch& patch) {
   const float reach = kHalf + 1.0F;
-  // The plane is in front of both views over the whole patch if it is at the patch's corners.
+  // The plane is in front of both views over the whole patch if it is at the patch's corners. So
+  // are the unused samples of a line: they lie at most 2 px beyond, where the depth is at least
+  // 0.3.
   if (g.cwiseAbs().sum() * reach > 0.5F) return false;
   for (const float u : {-reach, reach}) {
     for (const float v : {-reach, reach}) {

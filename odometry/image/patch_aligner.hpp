@@ -28,7 +28,7 @@ struct PatchWarp {
 /// A patch as predicted for the searched image, with precomputed values for one alignment step. All
 /// at one pyramid level.
 struct PatchTemplate {
-  // NOLINTNEXTLINE(modernize-use-equals-default): that one would set all vectors to zero.
+  // NOLINTNEXTLINE(modernize-use-equals-default): emplace() would set all vectors to zero first.
   PatchTemplate() {}
 
   int level = 0;

@@ -3,8 +3,8 @@
 //
 // Usage: node tests/bench/seek_time.mjs [--runs FOLDER] [--seeks N] [--rounds N] [--pause-ms MS] [--record]
 //   --runs FOLDER  keeps the flown run here, or uses the one that is here
-//   --rounds N     seeks the same instants N times, and prints the median of the slowest instant as well: unlike the
-//                  longest seek, it does not depend on what else the machine does
+//   --rounds N     seeks the same instants N times: the median of the slowest instant tells whether an instant is slow
+//                  in general, the longest seek whether any seek was
 //   --pause-ms MS  between the pictures of one seek and the click of the next; 0 clicks while the server still
 //                  draws the pictures of the last seek in full
 //   --record       flies with recorded images, so that the camera's picture is read instead of rendered
@@ -127,8 +127,18 @@ try {
   }
   for (const name of kPanels) {
     const all = times.flat().map((time) => time[name]);
-    const instants = times.map((rounds) => quantile(rounds.map((time) => time[name]), 0.5));
-    const figures = [quantile(all, 0.5), quantile(all, 0.95), Math.max(...all), Math.max(...instants)];
+    const instants = times.map((rounds) =>
+      quantile(
+        rounds.map((time) => time[name]),
+        0.5,
+      ),
+    );
+    const figures = [
+      quantile(all, 0.5),
+      quantile(all, 0.95),
+      Math.max(...all),
+      Math.max(...instants),
+    ];
     const [median, p95, most, slowest] = figures.map((value) => `${value.toFixed(0)} ms`);
     console.log(
       `${name}: median ${median}, 95 % ${p95}, longest ${most}; median of the slowest instant ${slowest}`,

@@ -22,6 +22,9 @@ namespace overfly::renderer::raycast {
 
 namespace {
 
+// Indices of a tile's elements, mip levels included, are exact as floats.
+static_assert(2 * terrain::kTileSide * terrain::kTileSide < 1 << 24);
+
 /// The tile's tables by mip level, and the values of one level for eight pixels. Offsets and
 /// strides are floats: indices are below 2^24 and therefore exact.
 struct Tables {
@@ -241,7 +244,7 @@ struct Fetch {
     for (int plane = 0; plane < planes; ++plane) {
       const char* from = first + static_cast<std::size_t>(plane) * plane_bytes;
       const auto line = [&](int i) {
-        // As _mm_prefetch, which GCC 12 takes for a call without effect and removes.
+        // As _mm_prefetch. GCC 12 removes calls of functions that use nothing but that.
         asm volatile("prefetcht0 %0" : : "m"(from[kBytes * static_cast<std::size_t>(elements[i])]));
       };
       if (every) {
