@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 
 #include "core/outside/file_text.hpp"
 #include "terrain/files/outside_access.hpp"
@@ -41,6 +42,26 @@ Status check_overviews(GDALDataset& dataset, const fs::path& file) {
   return Error{ErrorCode::kUnreadable, file.string() + ": names overviews outside its folder"};
 }
 
+/// The name under which GDAL opens a file. Of a virtual raster each call gives another one.
+///
+/// GDAL opens the sources of virtual rasters once for each name and opening thread, and shares them
+/// between all handles opened by that thread. Two such handles may serve two threads later, which
+/// then read one source at the same time: texels are wrong. Sources are named relative to the
+/// virtual raster (check_virtual_raster), so that a folder spelled in a new way keeps them apart.
+fs::path name_for_gdal(const fs::path& file) {
+  // Absolute, so that GDAL does not interpret it as one of its special names.
+  if (!is_virtual_raster(file)) return fs::absolute(file);
+  static std::atomic<std::uint64_t> opened{0};
+  std::error_code failed;  // then GDAL reports what is wrong with the file
+  const fs::path place = fs::weakly_canonical(fs::absolute(file), failed);
+  std::string folder = place.parent_path().string();
+  // A binary number whose digits change nothing about the place.
+  for (std::uint64_t digits = ++opened; digits > 0; digits /= 2) {
+    folder += digits % 2 == 1 ? "//." : "/.";
+  }
+  return folder + "/" + place.filename().string();
+}
+
 }  // namespace
 
 Result<DatasetPtr> open_raster(const fs::path& file, int level) {
@@ -54,13 +75,11 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   GdalMessages messages;
   CPLStringList options;
   if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
-  DatasetPtr dataset(GDALDataset::Open(
-      // Absolute, so that GDAL does not interpret it as one of its special names.
-      fs::absolute(file).c_str(),
-      GDAL_OF_RASTER | GDAL_OF_READONLY,
-      nullptr,
-      options.List(),
-      nullptr));
+  DatasetPtr dataset(GDALDataset::Open(name_for_gdal(file).c_str(),
+                                       GDAL_OF_RASTER | GDAL_OF_READONLY,
+                                       nullptr,
+                                       options.List(),
+                                       nullptr));
   if (!dataset) {
     std::string reason = messages.text();
     for (const std::string& doubt : SideCars().doubts(file)) reason += "; " + doubt;

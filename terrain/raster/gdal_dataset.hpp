@@ -27,7 +27,8 @@ using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 void initialise_gdal();
 
 /// Opens a raster for reading. Level 0 is the file itself, n > 0 its n-th overview. GDAL's messages
-/// without an error are passed to the caller's GdalMessages.
+/// without an error are passed to the caller's GdalMessages. The handle shares nothing with others,
+/// so that any thread may use it, one at a time.
 /// Errors: kNotFound; kUnreadable with GDAL's reason, also for anything but a regular file, and as
 /// check_virtual_raster.
 [[nodiscard]] Result<DatasetPtr> open_raster(const std::filesystem::path& file, int level = 0);

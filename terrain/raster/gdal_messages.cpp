@@ -13,6 +13,17 @@ GdalMessages*& innermost() {
   return messages;
 }
 
+/// Removes "/." and "//." from names of files: open_raster spells folders with them.
+std::string plain_names(std::string line) {
+  std::size_t at = 0;
+  while ((at = line.find("/./", at)) != std::string::npos) {
+    const bool twice = at > 0 && line[at - 1] == '/';
+    line.erase(at, twice ? 3 : 2);
+    if (at > 0) --at;
+  }
+  return line;
+}
+
 }  // namespace
 
 GdalMessages::GdalMessages() : outer_(innermost()) {
@@ -34,6 +45,7 @@ void GdalMessages::add(std::string line) {
   constexpr std::size_t kLongest = 600;
   if (text_.size() > kLongest) return;
   std::replace(line.begin(), line.end(), '\n', ' ');
+  line = plain_names(std::move(line));
   while (!line.empty() && line.back() == ' ') line.pop_back();
   if (text_.find(line) != std::string::npos) return;
   if (!text_.empty()) text_ += "; ";

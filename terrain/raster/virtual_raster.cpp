@@ -42,15 +42,6 @@ constexpr std::string_view kElements =
 
 using Xml = std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)>;
 
-/// Whether GDAL would treat a file as a virtual raster, by its first 1024 bytes.
-bool is_virtual(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string head(1024, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return lower_case(std::move(head)).find("<vrtdataset") != std::string::npos;
-}
-
 class Description {
  public:
   /// @param file  its symbolic links resolved, since GDAL also resolves names relative to a link's
@@ -135,8 +126,12 @@ class Description {
       return refuse("a file next to one of its sources leads out of its folder: " +
                     text.substr(0, 200));
     }
-    names_.insert(text);
+    // GDAL replaces the link's name by its target's, which may be absolute.
     std::error_code failed;
+    if (fs::is_symlink(place, failed) && is_virtual_raster(place)) {
+      return refuse("is made of a virtual raster that is a symbolic link: " + text.substr(0, 200));
+    }
+    names_.insert(text);
     sources_.insert(fs::weakly_canonical(place, failed));  // checked just before
     return {};
   }
@@ -155,7 +150,7 @@ Status check_tree(const fs::path& file,
                   std::set<fs::path>& whole_of,
                   std::set<fs::path>& sound,
                   SideCars& side_cars) {
-  if (sound.count(file) > 0 || !is_virtual(file)) return {};
+  if (sound.count(file) > 0 || !is_virtual_raster(file)) return {};
   if (!whole_of.insert(file).second || whole_of.size() > kMaxFileDepth) {
     return Error{ErrorCode::kUnreadable,
                  file.string() + ": a virtual raster is made of itself, or of others more than " +
@@ -174,6 +169,14 @@ Status check_tree(const fs::path& file,
 }
 
 }  // namespace
+
+bool is_virtual_raster(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(1024, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return lower_case(std::move(head)).find("<vrtdataset") != std::string::npos;
+}
 
 Status check_virtual_raster(const fs::path& file) {
   std::set<fs::path> whole_of;

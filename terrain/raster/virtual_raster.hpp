@@ -7,14 +7,17 @@
 
 namespace overfly::terrain {
 
+/// Whether GDAL would treat a file as a virtual raster, by its first 1024 bytes.
+[[nodiscard]] bool is_virtual_raster(const std::filesystem::path& file);
+
 /// Reads the description of a virtual raster, and of the rasters it consists of, before GDAL does.
 /// Of any other file it reads only the first bytes.
 ///
 /// A description may contain only plain sources that are named relative to it and lie inside its
 /// folder after symbolic links are resolved. All else that GDAL would follow is rejected: absolute
 /// names, addresses, archives, parts of containers, descriptions in place of names, raw bytes,
-/// warps, computed bands, unknown elements, and sources with a side-car (an overview, a header)
-/// that leads out of the folder.
+/// warps, computed bands, unknown elements, sources with a side-car (an overview, a header) that
+/// leads out of the folder, and virtual rasters as sources that are symbolic links.
 /// Errors: kNotFound for a missing source; kUnreadable naming the file and the reason.
 [[nodiscard]] Status check_virtual_raster(const std::filesystem::path& file);
 

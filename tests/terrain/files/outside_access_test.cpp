@@ -163,6 +163,8 @@ TEST_F(OutsideAccess, OfAVirtualRasterIsFollowedThroughOthersAndLinks) {
   EXPECT_THAT(said(vrt(source("inner.vrt"))), HasSubstr("not named relative to it"));
   testing::write_text(data("inner.vrt"), vrt(source("a.tif")));
   EXPECT_EQ(said(vrt(source("inner.vrt"))), "ok");
+  fs::create_symlink(data("inner.vrt"), data("link.vrt"));
+  EXPECT_THAT(said(vrt(source("link.vrt"))), HasSubstr("is a symbolic link: link.vrt"));
   fs::create_symlink(root() / "secret.tif", data("link.tif"));
   EXPECT_THAT(said(vrt(source("link.tif"))), HasSubstr("not named relative to it"));
   EXPECT_NE(said(vrt(source("all.vrt"))), "ok") << "made of itself";

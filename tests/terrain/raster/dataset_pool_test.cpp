@@ -1,11 +1,16 @@
-// Handles on a raster that is taken away, replaced or written to while they are in use.
+// Handles on a raster that is taken away, replaced or written to while they are in use, and handles
+// that serve several threads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <future>
+#include <vector>
 
 #include "terrain/raster/gdal_dataset.hpp"
+#include "terrain/synthesize_strip.hpp"
 #include "tests/support/support.hpp"
 #include "tests/terrain/raster_file.hpp"
 
@@ -62,6 +67,59 @@ TEST_F(DatasetPoolTest, OpenHandlesOfAVanishedFileAreShared) {
   const auto taken = theirs.get();
   ASSERT_TRUE(taken.ok()) << taken.error().message;
   EXPECT_EQ(taken->get(), only);
+}
+
+constexpr int kSidePx = 256;
+
+/// A window of a raster's three bands.
+std::vector<std::uint8_t> read_window(GDALDataset& dataset, int x_px, int y_px) {
+  std::vector<std::uint8_t> texels(std::size_t{3} * kSidePx * kSidePx);
+  const CPLErr read = dataset.RasterIO(GF_Read,
+                                       x_px,
+                                       y_px,
+                                       kSidePx,
+                                       kSidePx,
+                                       texels.data(),
+                                       kSidePx,
+                                       kSidePx,
+                                       GDT_Byte,
+                                       3,
+                                       nullptr,
+                                       3,
+                                       GSpacing{3} * kSidePx,
+                                       1,
+                                       nullptr);
+  return read == CE_None ? texels : std::vector<std::uint8_t>{};
+}
+
+TEST(VirtualRaster, HandlesOpenedByOneThreadServeSeveral) {
+  const testing::TemporaryFolder folder;
+  StripOptions options;
+  options.length_m = 2000.0;
+  options.width_m = 1000.0;
+  ASSERT_TRUE(synthesize_strip(folder.path() / "strip", options).ok());
+  const fs::path file = folder.path() / "strip" / "imagery.vrt";
+  constexpr int kLevel = 1;  // in a virtual raster of its own
+  const auto alone = open_raster(file, kLevel).value();
+  const int columns = alone->GetRasterXSize() / kSidePx;
+  const int windows = columns * (alone->GetRasterYSize() / kSidePx);
+  ASSERT_GT(windows, 8);
+  const auto window = [&](GDALDataset& dataset, int i) {
+    return read_window(dataset, i % columns * kSidePx, i / columns * kSidePx);
+  };
+  for (int round = 0; round < 5; ++round) {
+    const auto mine = open_raster(file, kLevel).value();
+    const auto theirs = open_raster(file, kLevel).value();
+    std::vector<std::vector<std::uint8_t>> read(static_cast<std::size_t>(windows));
+    std::atomic<int> next{0};
+    const auto work = [&](GDALDataset& dataset) {
+      for (int i = next++; i < windows; i = next++) read[i] = window(dataset, i);
+    };
+    auto other = std::async(std::launch::async, [&] { work(*theirs); });
+    work(*mine);
+    other.get();
+    for (int i = 0; i < windows; ++i) EXPECT_TRUE(read[i] == window(*alone, i)) << i;
+  }
 }
 
 }  // namespace
