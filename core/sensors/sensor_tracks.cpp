@@ -11,6 +11,9 @@ namespace overfly {
 namespace {
 
 constexpr double kSecondsPerNs = 1e-9;
+/// Which of a vehicle's messages comes first after its start is chance: so long after the first
+/// sample taken a better source replaces the one chosen. Then the slowest of usual rates has come.
+constexpr std::int64_t kChoosingNs = 1'000'000'000;
 
 /// The samples of a track's sensor, of a list that may be constant.
 template <typename Samples, typename Sample>
@@ -69,10 +72,13 @@ void move_times(Sample& sample, std::int64_t by_ns) {
 void SensorTracks::add(int preference, const std::string& source, const SensorSamples& samples) {
   const auto add_to = [&](auto& track) {
     for (const auto& sample : list_of(samples, track)) {
-      if (preference < track.preference && !track.taken) {
+      const bool open = !track.taken || available_ns(sample) < track.first_taken_ns + kChoosingNs;
+      if (preference < track.preference && open) {
         track.preference = preference;
         track.source = source;
         track.waiting.clear();
+        track.taken = false;
+        track.count = 0;
         track.last_measured_ns = std::numeric_limits<std::int64_t>::min();
       }
       if (preference == track.preference && insert_in_order(track, sample, max_waiting_)) {

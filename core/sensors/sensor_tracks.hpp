@@ -18,16 +18,16 @@ struct SensorTrack {
   std::string source;
   std::deque<Sample> waiting;  ///< available_ns strictly increasing
   std::int64_t last_measured_ns = std::numeric_limits<std::int64_t>::min();
-  bool taken = false;  ///< some samples: the source is no longer changed
+  bool taken = false;  ///< some samples of this source
   std::int64_t first_taken_ns = 0;
   std::int64_t last_taken_ns = std::numeric_limits<std::int64_t>::min();  ///< available_ns
   std::uint64_t count = 0;                                                ///< taken
 };
 
-/// Holds samples until they are taken. Each sensor has one source: the best that came before its
-/// first sample was taken, so that nothing is measured twice. Samples that come late are put in
-/// order; what comes after later samples were taken is counted and left out, as are the oldest of
-/// too many. Not thread-safe.
+/// Holds samples until they are taken. Each sensor has one source: the best that came within a
+/// second of the first sample taken. The times of samples taken increase, whatever their source.
+/// Samples that come late are put in order; what comes after later samples were taken is counted
+/// and left out, as are the oldest of too many. Not thread-safe.
 class SensorTracks {
  public:
   /// @param max_waiting  samples of each sensor

@@ -62,6 +62,13 @@ TEST(LiveSensors, LateMessagesAreOrderedAndDoubleOnesLeftOut) {
   EXPECT_THAT(sensors.report(), HasSubstr("1 samples came too late"));
 }
 
+void high_resolution_imu(LiveSensors& sensors, std::uint64_t boot_ms) {
+  give(sensors,
+       MessageId::kHighresImu,
+       PayloadWriter(63).put(0, 1000 * boot_ms).put(60, std::uint16_t{0x3F}),
+       static_cast<std::int64_t>(boot_ms) * kMillisNs);
+}
+
 TEST(LiveSensors, EachSensorHasOneMessage) {
   LiveSensors sensors(0.0);
   scaled_imu(sensors, MessageId::kScaledImu2, 1000, 200);
@@ -70,17 +77,27 @@ TEST(LiveSensors, EachSensorHasOneMessage) {
   const SensorSamples first = sensors.take_until(1020 * kMillisNs, 0);
   ASSERT_EQ(first.imu.size(), 1U);
   EXPECT_NEAR(first.imu[0].acceleration_m_s2.x(), 0.980665, 1e-12);
-  // A better one that comes later would measure twice.
-  give(sensors,
-       MessageId::kHighresImu,
-       PayloadWriter(63).put(0, std::uint64_t{1'025'000}).put(60, std::uint16_t{0x3F}),
-       1025 * kMillisNs);
-  EXPECT_TRUE(sensors.take_until(1030 * kMillisNs, 0).imu.empty());
-  scaled_imu(sensors, MessageId::kScaledImu, 1105, 100);
-  EXPECT_EQ(sensors.take_until(1200 * kMillisNs, 0).imu.size(), 1U);
+  // A better one that comes during the flight does not change the source.
+  high_resolution_imu(sensors, 2010);
+  EXPECT_TRUE(sensors.take_until(2020 * kMillisNs, 0).imu.empty());
+  scaled_imu(sensors, MessageId::kScaledImu, 2105, 100);
+  EXPECT_EQ(sensors.take_until(2200 * kMillisNs, 0).imu.size(), 1U);
   EXPECT_EQ(sensors.report(),
-            "sensors of the vehicle: imu from SCALED_IMU (10.0 Hz); not sent: barometer, gps, "
+            "sensors of the vehicle: imu from SCALED_IMU (0.9 Hz); not sent: barometer, gps, "
             "airspeed, magnetometer, range");
+}
+
+TEST(LiveSensors, ABetterMessageReplacesTheFirstOneAtTheStart) {
+  LiveSensors sensors(0.0);
+  scaled_imu(sensors, MessageId::kScaledImu, 1000, 100);
+  EXPECT_THAT(times_ms(sensors.take_until(1010 * kMillisNs, 0).imu), ElementsAre(1000));
+  scaled_imu(sensors, MessageId::kScaledImu, 1020, 100);
+  high_resolution_imu(sensors, 995);  // before what was taken
+  high_resolution_imu(sensors, 1025);
+  scaled_imu(sensors, MessageId::kScaledImu, 1030, 100);
+  high_resolution_imu(sensors, 1125);
+  EXPECT_THAT(times_ms(sensors.take_until(1200 * kMillisNs, 0).imu), ElementsAre(1025, 1125));
+  EXPECT_THAT(sensors.report(), HasSubstr("imu from HIGHRES_IMU (10.0 Hz)"));
 }
 
 TEST(LiveSensors, AFixThatIsSentAgainIsNotMeasuredAgain) {
