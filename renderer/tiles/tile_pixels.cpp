@@ -8,6 +8,21 @@ namespace overfly::renderer {
 
 namespace {
 
+constexpr int kValidStep = 8;
+
+Image thinned(const Image& valid) {
+  const bool all_valid =
+      std::all_of(valid.data.begin(), valid.data.end(), [](auto value) { return value != 0; });
+  if (all_valid) return {};
+  Image thin(valid.width_px / kValidStep, valid.height_px / kValidStep, 1);
+  for (int y = 0; y < thin.height_px; ++y) {
+    for (int x = 0; x < thin.width_px; ++x) {
+      thin.at(x, y) = valid.at(x * kValidStep + kValidStep / 2, y * kValidStep + kValidStep / 2);
+    }
+  }
+  return thin;
+}
+
 /// @tparam Channels  of the image, a constant so that the loops are optimised
 template <int Channels, typename T>
 void halve_rows(const ImageBuffer<T>& image, ImageBuffer<T>& half) {
@@ -118,5 +133,39 @@ Image16 linear_with_alpha(const Image& rgb, const Image& alpha) {
 std::vector<Image> mip_chain(Image level_0) { return chain(std::move(level_0)); }
 
 std::vector<Image16> mip_chain(Image16 level_0) { return chain(std::move(level_0)); }
+
+std::size_t TilePixels::bytes() const {
+  std::size_t sum = valid.data.size();
+  for (const Image& level : levels) sum += level.data.size();
+  for (const Image16& level : linear_levels) sum += level.data.size() * sizeof(std::uint16_t);
+  return sum;
+}
+
+bool TilePixels::has_imagery(double u, double v) const {
+  if (valid.empty()) return true;
+  const int x = std::clamp(static_cast<int>(u * valid.width_px), 0, valid.width_px - 1);
+  const int y = std::clamp(static_cast<int>(v * valid.height_px), 0, valid.height_px - 1);
+  return valid.at(x, y) != 0;
+}
+
+TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
+  TilePixels pixels;
+  pixels.valid = thinned(tile.valid);
+  switch (format) {
+    case PixelFormat::kGrey8:
+      pixels.levels = mip_chain(grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgb8:
+      pixels.levels = mip_chain(with_alpha(tile.rgb, tile.valid));
+      break;
+    case PixelFormat::kGreyLinear:
+      pixels.linear_levels = mip_chain(linear_grey_from_rgb(tile.rgb));
+      break;
+    case PixelFormat::kRgbLinear:
+      pixels.linear_levels = mip_chain(linear_with_alpha(tile.rgb, tile.valid));
+      break;
+  }
+  return pixels;
+}
 
 }  // namespace overfly::renderer

@@ -1,11 +1,14 @@
-// Tile texels in the formats of textures.
+// Tile texels in the formats of textures, with their mip levels.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/camera/image.hpp"
+#include "renderer/renderer.hpp"
+#include "terrain/tile_source.hpp"
 
 namespace overfly::renderer {
 
@@ -29,5 +32,21 @@ namespace overfly::renderer {
 /// row is dropped, as in OpenGL's level sizes.
 [[nodiscard]] std::vector<Image> mip_chain(Image level_0);
 [[nodiscard]] std::vector<Image16> mip_chain(Image16 level_0);
+
+/// One tile's texels with their border, and their halvings down to 1 x 1 (mip_chain).
+/// Immutable: shared between the store and its users.
+struct TilePixels {
+  std::vector<Image> levels;           ///< kGrey8: 1 channel; kRgb8: RGB and validity as alpha
+  std::vector<Image16> linear_levels;  ///< kGreyLinear, kRgbLinear likewise; 65535 = 1.0
+  /// Validity, with an eighth of the tile's texels per side; empty if all are valid.
+  Image valid;
+
+  [[nodiscard]] std::size_t bytes() const;
+  /// True if there is imagery. @param u, v  in the tile with its border, in [0, 1]
+  [[nodiscard]] bool has_imagery(double u, double v) const;
+};
+
+/// A tile in a format, with its mip levels.
+[[nodiscard]] TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format);
 
 }  // namespace overfly::renderer

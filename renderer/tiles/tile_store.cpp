@@ -26,7 +26,6 @@ using terrain::TileId;
 
 namespace {
 
-constexpr int kValidStep = 8;
 /// Maximum number of waiting requests of `find`; older ones are dropped and requested again if
 /// needed.
 constexpr std::size_t kMaxAsked = 256;
@@ -34,19 +33,6 @@ constexpr std::size_t kMaxAsked = 256;
 constexpr std::size_t kMaxSomeTime = 20'000;
 /// A thread's pause between two tiles read ahead, relative to the time spent on the last one.
 constexpr double kRestPerWork = 6.0;
-
-Image thinned(const Image& valid) {
-  const bool all_valid =
-      std::all_of(valid.data.begin(), valid.data.end(), [](auto value) { return value != 0; });
-  if (all_valid) return {};
-  Image thin(valid.width_px / kValidStep, valid.height_px / kValidStep, 1);
-  for (int y = 0; y < thin.height_px; ++y) {
-    for (int x = 0; x < thin.width_px; ++x) {
-      thin.at(x, y) = valid.at(x * kValidStep + kValidStep / 2, y * kValidStep + kValidStep / 2);
-    }
-  }
-  return thin;
-}
 
 /// Reads the elevation under a tile, at about the resolution needed to draw the tile.
 void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
@@ -65,40 +51,6 @@ void touch_heights(const terrain::TileSource& tiles, const TileId& id) {
 }
 
 }  // namespace
-
-std::size_t TilePixels::bytes() const {
-  std::size_t sum = valid.data.size();
-  for (const Image& level : levels) sum += level.data.size();
-  for (const Image16& level : linear_levels) sum += level.data.size() * sizeof(std::uint16_t);
-  return sum;
-}
-
-bool TilePixels::has_imagery(double u, double v) const {
-  if (valid.empty()) return true;
-  const int x = std::clamp(static_cast<int>(u * valid.width_px), 0, valid.width_px - 1);
-  const int y = std::clamp(static_cast<int>(v * valid.height_px), 0, valid.height_px - 1);
-  return valid.at(x, y) != 0;
-}
-
-TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format) {
-  TilePixels pixels;
-  pixels.valid = thinned(tile.valid);
-  switch (format) {
-    case PixelFormat::kGrey8:
-      pixels.levels = mip_chain(grey_from_rgb(tile.rgb));
-      break;
-    case PixelFormat::kRgb8:
-      pixels.levels = mip_chain(with_alpha(tile.rgb, tile.valid));
-      break;
-    case PixelFormat::kGreyLinear:
-      pixels.linear_levels = mip_chain(linear_grey_from_rgb(tile.rgb));
-      break;
-    case PixelFormat::kRgbLinear:
-      pixels.linear_levels = mip_chain(linear_with_alpha(tile.rgb, tile.valid));
-      break;
-  }
-  return pixels;
-}
 
 /// The data protected by the lock, and the threads.
 struct TileStore::State {

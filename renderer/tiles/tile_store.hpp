@@ -5,30 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "core/camera/image.hpp"
 #include "core/result.hpp"
 #include "renderer/renderer.hpp"
+#include "renderer/tiles/tile_pixels.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::renderer {
-
-/// One tile's texels with their border, and their halvings down to 1 x 1 (tile_pixels.hpp).
-/// Immutable: shared between the store and its users.
-struct TilePixels {
-  std::vector<Image> levels;           ///< kGrey8: 1 channel; kRgb8: RGB and validity as alpha
-  std::vector<Image16> linear_levels;  ///< kGreyLinear, kRgbLinear likewise; 65535 = 1.0
-  /// Validity, with an eighth of the tile's texels per side; empty if all are valid.
-  Image valid;
-
-  [[nodiscard]] std::size_t bytes() const;
-  /// True if there is imagery. @param u, v  in the tile with its border, in [0, 1]
-  [[nodiscard]] bool has_imagery(double u, double v) const;
-};
-
-/// A tile in a format, with its mip levels.
-[[nodiscard]] TilePixels tile_pixels_from(const terrain::Tile& tile, PixelFormat format);
 
 struct TileStoreOptions {
   std::size_t budget_bytes = std::size_t{512} << 20U;
