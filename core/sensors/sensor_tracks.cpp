@@ -11,8 +11,8 @@ namespace overfly {
 namespace {
 
 constexpr double kSecondsPerNs = 1e-9;
-/// Which of a vehicle's messages comes first after its start is chance: so long after the first
-/// sample taken a better source replaces the one chosen. Then the slowest of usual rates has come.
+/// Time after the first sample taken in which a better source still replaces the one chosen: which
+/// of a vehicle's messages comes first is chance, and all usual rates are at least 1 Hz.
 constexpr std::int64_t kChoosingNs = 1'000'000'000;
 
 /// The samples of a track's sensor, of a list that may be constant.

@@ -20,6 +20,7 @@ void initialise_gdal() {
     GDALAllRegister();
     close_outside_access();
     show_regular_files_alone();
+    restrict_virtual_rasters();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
     // Listing the directory at every open to find side-cars costs more than it saves.
@@ -52,8 +53,9 @@ fs::path name_for_gdal(const fs::path& file) {
   // Absolute, so that GDAL does not interpret it as one of its special names.
   if (!is_virtual_raster(file)) return fs::absolute(file);
   static std::atomic<std::uint64_t> opened{0};
-  std::error_code failed;  // then GDAL reports what is wrong with the file
+  std::error_code failed;
   const fs::path place = fs::weakly_canonical(fs::absolute(file), failed);
+  if (failed) return fs::absolute(file);  // vanished: GDAL reports it
   std::string folder = place.parent_path().string();
   // A binary number whose digits change nothing about the place.
   for (std::uint64_t digits = ++opened; digits > 0; digits /= 2) {
@@ -75,11 +77,10 @@ Result<DatasetPtr> open_raster(const fs::path& file, int level) {
   GdalMessages messages;
   CPLStringList options;
   if (level > 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(level - 1).c_str());
-  DatasetPtr dataset(GDALDataset::Open(name_for_gdal(file).c_str(),
-                                       GDAL_OF_RASTER | GDAL_OF_READONLY,
-                                       nullptr,
-                                       options.List(),
-                                       nullptr));
+  const fs::path name = name_for_gdal(file);
+  const CheckedName checked(name);
+  DatasetPtr dataset(GDALDataset::Open(
+      name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options.List(), nullptr));
   if (!dataset) {
     std::string reason = messages.text();
     for (const std::string& doubt : SideCars().doubts(file)) reason += "; " + doubt;

@@ -1,6 +1,8 @@
 #include "terrain/raster/virtual_raster.hpp"
 
+#include <cpl_error.h>
 #include <cpl_minixml.h>
+#include <gdal_priv.h>
 
 #include <algorithm>
 #include <cctype>
@@ -168,7 +170,40 @@ Status check_tree(const fs::path& file,
   return {};
 }
 
+/// See CheckedName; empty: none.
+std::string& checked_name() {
+  thread_local std::string name;
+  return name;
+}
+
+using Opener = GDALDataset* (*)(GDALOpenInfo*);
+Opener open_unchecked = nullptr;
+
+GDALDataset* open_checked(GDALOpenInfo* info) {
+  const std::string name = info->pszFilename;
+  if (name != checked_name()) {
+    // GDAL also takes a description in place of a name.
+    if (!is_virtual_raster(name)) return nullptr;
+    if (const Status status = check_virtual_raster(name); !status) {
+      CPLError(CE_Failure, CPLE_OpenFailed, "%s", status.error().message.c_str());
+      return nullptr;
+    }
+  }
+  return open_unchecked(info);
+}
+
 }  // namespace
+
+void restrict_virtual_rasters() {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("VRT");
+  if (driver == nullptr || driver->pfnOpen == &open_checked) return;
+  open_unchecked = driver->pfnOpen;
+  driver->pfnOpen = &open_checked;
+}
+
+CheckedName::CheckedName(const fs::path& name) { checked_name() = name.string(); }
+
+CheckedName::~CheckedName() { checked_name().clear(); }
 
 bool is_virtual_raster(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);

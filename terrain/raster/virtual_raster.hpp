@@ -21,4 +21,18 @@ namespace overfly::terrain {
 /// Errors: kNotFound for a missing source; kUnreadable naming the file and the reason.
 [[nodiscard]] Status check_virtual_raster(const std::filesystem::path& file);
 
+/// Makes GDAL open only virtual rasters that check_virtual_raster accepts, whoever names them: a
+/// file of overviews or a mask next to a raster of any format may be a virtual raster, too.
+/// @pre GDALAllRegister() was called
+void restrict_virtual_rasters();
+
+/// While it exists, GDAL opens a virtual raster of this name on this thread without another check.
+class CheckedName {
+ public:
+  explicit CheckedName(const std::filesystem::path& name);
+  ~CheckedName();
+  CheckedName(const CheckedName&) = delete;
+  CheckedName& operator=(const CheckedName&) = delete;
+};
+
 }  // namespace overfly::terrain

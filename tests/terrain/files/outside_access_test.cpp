@@ -189,6 +189,35 @@ TEST_F(OutsideAccess, OfOverviewsIsTheFilesOwnFolder) {
   EXPECT_THAT(with_overviews("/vsicurl/" + address() + "/a.ovr"), HasSubstr("names overviews"));
 }
 
+TEST_F(OutsideAccess, OfOverviewsThatAreAVirtualRasterIsTheirFolder) {
+  RasterFile dark;
+  dark.value = [](int, int, int) { return 7.0; };
+  testing::write_raster(data("a.tif"), dark);
+  RasterFile bright = dark;
+  bright.value = [](int, int, int) { return 99.0; };
+  testing::write_raster(root() / "secret.tif", bright);
+  testing::write_raster(data("own.tif"), bright);
+  // The grey value of the first overview; -1 = there is none.
+  const auto seen = [&](const std::string& name, bool relative) {
+    std::string overview = vrt(source(name, relative));
+    for (std::size_t at = 0; (at = overview.find("Size=\"64\"", at)) != std::string::npos;) {
+      overview.replace(at, 9, "Size=\"32\"");
+    }
+    testing::write_text(data("a.tif.ovr"), overview);
+    const auto opened = open_raster(data("a.tif"));
+    GDALRasterBand* band = (*opened)->GetRasterBand(1);
+    if (band->GetOverviewCount() == 0) return -1;
+    std::uint8_t grey = 0;
+    EXPECT_EQ(
+        band->GetOverview(0)->RasterIO(GF_Read, 0, 0, 1, 1, &grey, 1, 1, GDT_Byte, 0, 0, nullptr),
+        CE_None);
+    return static_cast<int>(grey);
+  };
+  EXPECT_EQ(seen("own.tif", true), 99);
+  EXPECT_EQ(seen((root() / "secret.tif").string(), false), -1);
+  EXPECT_EQ(seen("../secret.tif", true), -1);
+}
+
 TEST_F(OutsideAccess, OfACoordinateReferenceSystemIsNone) {
   RasterFile bare;
   bare.crs = "";
