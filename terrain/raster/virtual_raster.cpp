@@ -176,10 +176,14 @@ std::string& checked_name() {
   return name;
 }
 
-using Opener = GDALDataset* (*)(GDALOpenInfo*);
-Opener open_unchecked = nullptr;
+/// GDAL's own functions.
+int (*identify)(GDALOpenInfo*) = nullptr;
+GDALDataset* (*open_unchecked)(GDALOpenInfo*) = nullptr;
 
 GDALDataset* open_checked(GDALOpenInfo* info) {
+  // Looks at what GDAL has read. Names of FIFOs and devices come here as well, of which GDAL sees
+  // nothing (regular_files.hpp); to open one here would wait for its writer.
+  if (identify(info) == 0) return nullptr;
   const std::string name = info->pszFilename;
   if (name != checked_name()) {
     // GDAL also takes a description in place of a name.
@@ -197,6 +201,7 @@ GDALDataset* open_checked(GDALOpenInfo* info) {
 void restrict_virtual_rasters() {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("VRT");
   if (driver == nullptr || driver->pfnOpen == &open_checked) return;
+  identify = driver->pfnIdentify;
   open_unchecked = driver->pfnOpen;
   driver->pfnOpen = &open_checked;
 }
