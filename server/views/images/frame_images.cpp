@@ -114,7 +114,8 @@ void FrameImages::remember(const ViewedFrame& frame, const StampedImage& live) {
   if (find(key) == nullptr) keep(key, {live.image, {}});
 }
 
-FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFrame& frame) {
+FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFrame& frame,
+                                                                 int halvings) {
   if (find(key_of("received", frame)) != nullptr) return std::optional(SharedImage());
   const auto again = renderers_.frames_of(frame.run_id);
   if (!again) return again.error();
@@ -123,7 +124,7 @@ FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFra
   if (!maker.is_as_rendered(frame.camera, frame.row)) return std::optional(SharedImage());
   auto request = drawn_request(frame, maker);
   if (!request) return request.error();
-  request->camera = half_sized(request->camera);
+  for (int i = 0; i < halvings; ++i) request->camera = half_sized(request->camera);
   request->tile_wait_ns = kPreviewTileWaitNs;
   auto drawn = (*again)->renderer.render_camera(*request);
   if (!drawn) return drawn.error();
