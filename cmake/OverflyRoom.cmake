@@ -20,8 +20,8 @@ endfunction()
 
 # overfly_optimise(TARGET LEVEL)
 #
-# The level of optimisation in release builds, where less than CMake's -O3 is enough: it takes a
-# quarter (-O2) or a third (-O1) of the compiler's time less.
+# The level of optimisation in release builds, where less than CMake's -O3 is enough: -O2 takes a
+# tenth and -Og a third of the compiler's time less.
 function(overfly_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   overfly_precompile(${target} ${level})
@@ -29,7 +29,7 @@ endfunction()
 
 # overfly_precompile(TARGET LEVEL)
 #
-# Lets TARGET use the headers that are compiled once for its level of optimisation
+# Lets TARGET use the headers that are compiled once for its level of optimisation, if there are any
 # (cmake/precompiled). Sources with other options need the property SKIP_PRECOMPILE_HEADERS.
 function(overfly_precompile target level)
   if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")

@@ -1,5 +1,4 @@
-// Headers that most sources include. They are compiled once for each level of optimisation
-//; every source still includes what it uses.
+// Headers that most sources include, compiled once. Every source still includes what it uses.
 #pragma once
 
 #include <Eigen/Core>
