@@ -6,19 +6,17 @@
 #include <cstddef>
 
 namespace overfly {
-namespace {
 
-template <int N>
-SymmetricEigen<N> solved(const Eigen::Matrix<double, N, N>& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(A);
+SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(A);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-}  // namespace
-
-SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) { return solved<3>(A); }
-
-SymmetricEigen<9> symmetric_eigen(const Matrix9d& A) { return solved<9>(A); }
+// With the solver for any size: one more solver takes the compiler 7 s.
+SymmetricEigen<9> symmetric_eigen(const Matrix9d& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
 
 std::optional<SymmetricEigen<Eigen::Dynamic>> symmetric_eigen(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
