@@ -11,7 +11,7 @@ export default defineConfig(({ mode }) => {
     base: './',
     build: { target: 'es2022', assetsInlineLimit: 0, sourcemap: false },
     // The tests read the style sheets.
-    test: { css: true },
+    test: { css: true, setupFiles: ['tests/support/file_of_node.ts'] },
     // By number: a bare container may not know the name localhost.
     server: { host: '127.0.0.1', proxy: { '/api': { target: origin, ws: true, headers } } },
   };

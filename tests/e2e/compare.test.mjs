@@ -210,6 +210,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
   });
 
   step('shows the pictures of the run that is made the main one', async () => {
+    await dashboard.untilStill('camera'); // the whole picture follows the preview of the seek above
     const before = (await dashboard.picture('camera')).digest;
     await page.locator(`[data-shown-run="${kFast}"] .shown-title`).click();
     await dashboard.untilPictureDiffers('camera', before);

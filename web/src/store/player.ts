@@ -62,7 +62,7 @@ export class Player {
     const next =
       change > 0
         ? kSpeeds.find((value) => value > magnitude * 1.001)
-        : kSpeeds.findLast((value) => value < magnitude * 0.999);
+        : kSpeeds.filter((value) => value < magnitude * 0.999).at(-1);
     if (next !== undefined) this.setSpeed(next);
   }
 

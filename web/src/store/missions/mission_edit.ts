@@ -37,7 +37,7 @@ export function newItem(
   command: number,
   place: readonly [number, number],
 ): MissionItem {
-  const before = mission.items.slice(0, index).findLast(hasHeight);
+  const before = mission.items.slice(0, index).filter(hasHeight).at(-1);
   const takesOff = command === kCommand.takeOff;
   const lands = command === kCommand.land;
   let frame: number = before?.frame ?? kFrame.aboveGround;
@@ -76,7 +76,8 @@ export function newItem(
 }
 
 export function inserted(mission: Mission, index: number, item: MissionItem): Mission {
-  return { ...mission, items: mission.items.toSpliced(index, 0, item) };
+  const items = [...mission.items.slice(0, index), item, ...mission.items.slice(index)];
+  return { ...mission, items };
 }
 
 export function removed(mission: Mission, id: number): Mission {
@@ -89,7 +90,7 @@ export function reordered(mission: Mission, id: number, step: number): Mission {
   const item = mission.items[from];
   const to = Math.max(0, Math.min(mission.items.length - 1, from + step));
   if (item === undefined || to === from) return mission;
-  return { ...mission, items: mission.items.toSpliced(from, 1).toSpliced(to, 0, item) };
+  return inserted(removed(mission, id), to, item);
 }
 
 export function changed(
