@@ -1,9 +1,11 @@
-# overfly_room(NAME [DEPENDS targets...] [PRIVATE_DEPENDS targets...] [FOLDERS subfolders...])
+# overfly_room(NAME [DEPENDS targets...] [PRIVATE_DEPENDS targets...] [FOLDERS subfolders...]
+#              [CALCULATING_FOLDERS subfolders...])
 #
 # Creates a room: a static library overfly_NAME with every .cpp in the current folder and in FOLDERS.
 # Third-party libraries belong in PRIVATE_DEPENDS: their types must not appear in a room's headers.
+# Sources in CALCULATING_FOLDERS are compiled with -O2, whatever overfly_optimise says of the others.
 function(overfly_room name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;FOLDERS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDS;PRIVATE_DEPENDS;FOLDERS;CALCULATING_FOLDERS" ${ARGN})
   set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   foreach(folder ${arg_FOLDERS})
     list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
@@ -16,6 +18,18 @@ function(overfly_room name)
   add_library(overfly_${name} STATIC ${sources})
   target_include_directories(overfly_${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(overfly_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
+  set(patterns)
+  foreach(folder ${arg_CALCULATING_FOLDERS})
+    list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  endforeach()
+  if(patterns)
+    file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+    add_library(overfly_${name}_calculating OBJECT ${sources})
+    target_include_directories(overfly_${name}_calculating PRIVATE ${CMAKE_SOURCE_DIR})
+    target_link_libraries(overfly_${name}_calculating PRIVATE ${arg_DEPENDS} ${arg_PRIVATE_DEPENDS})
+    overfly_optimise(overfly_${name}_calculating 2)
+    target_sources(overfly_${name} PRIVATE $<TARGET_OBJECTS:overfly_${name}_calculating>)
+  endif()
 endfunction()
 
 # overfly_optimise(TARGET LEVEL)

@@ -1,6 +1,7 @@
 #include "core/outside/outside_json.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace overfly {
 namespace {
@@ -53,5 +54,21 @@ Error json_syntax_error(std::string_view text,
   if (reason.size() > kLongest) reason = reason.substr(0, kLongest) + "...";
   return {ErrorCode::kUnreadable, origin + ", " + position_of(text, byte) + ": " + reason};
 }
+
+template <typename Json>
+Result<Json> json_from_outside(std::string_view text, const std::string& origin) {
+  if (Status status = check_json_depth(text, origin); !status) return status.error();
+  try {
+    return Json::parse(text);
+  } catch (const typename Json::parse_error& error) {
+    return json_syntax_error(text, error.byte, error.what(), origin);
+  } catch (const typename Json::exception& error) {
+    // For example a number out of the range of a double.
+    return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
+  }
+}
+
+template Result<nlohmann::json> json_from_outside(std::string_view, const std::string&);
+template Result<nlohmann::ordered_json> json_from_outside(std::string_view, const std::string&);
 
 }  // namespace overfly

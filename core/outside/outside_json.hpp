@@ -25,21 +25,11 @@ inline constexpr std::size_t kMaxJsonDepth = 64;
                                       const std::string& origin);
 
 /// Parses JSON from outside. The nesting depth is checked first, and no exception is thrown.
-/// @tparam Json  nlohmann::json or nlohmann::ordered_json. The caller names it, so that core needs
-/// no JSON library.
+/// @tparam Json  nlohmann::json or nlohmann::ordered_json. The parser is compiled once for each of
+/// the two, because it takes the compiler a second in every file that uses it.
 /// @param origin  names the source in messages: a file, "the body"
 /// Errors: kUnreadable naming origin, line and column, or origin and depth limit.
 template <typename Json>
-[[nodiscard]] Result<Json> json_from_outside(std::string_view text, const std::string& origin) {
-  if (Status status = check_json_depth(text, origin); !status) return status.error();
-  try {
-    return Json::parse(text);
-  } catch (const typename Json::parse_error& error) {
-    return json_syntax_error(text, error.byte, error.what(), origin);
-  } catch (const typename Json::exception& error) {
-    // For example a number out of the range of a double.
-    return Error{ErrorCode::kUnreadable, origin + ": " + error.what()};
-  }
-}
+[[nodiscard]] Result<Json> json_from_outside(std::string_view text, const std::string& origin);
 
 }  // namespace overfly

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/cancel.hpp"
+#include "core/outside/outside_json.hpp"
 #include "renderer/camera/truth_images.hpp"
 #include "server/camera/frame_maker.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -195,7 +196,9 @@ Result<Scenario> camera_check_scenario(const std::filesystem::path& folder) {
   land.texel_m = 0.5;
   const Status made = terrain::synthesize_world(folder / "world", land);
   if (!made) return made.error();
-  return resolve_scenario(nlohmann::json::parse(kBuiltinTest), {}, folder);
+  auto scenario = json_from_outside<nlohmann::json>(kBuiltinTest, "the built-in scenario");
+  if (!scenario) return scenario.error();
+  return resolve_scenario(std::move(*scenario), {}, folder);
 }
 
 }  // namespace overfly::server

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/outside/outside_json.hpp"
 #include "core/time.hpp"
 #include "server/files/json_schema.hpp"
 #include "server/files/whole_file.hpp"
@@ -18,7 +19,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 const JsonSchema& sweep_schema() {
-  static const JsonSchema instance(Json::parse(sweep_schema_text()));
+  static const JsonSchema instance(
+      json_from_outside<Json>(sweep_schema_text(), "the sweeps' schema").value());
   return instance;
 }
 

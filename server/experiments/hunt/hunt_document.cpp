@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/outside/outside_json.hpp"
 #include "server/files/json_schema.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_file.hpp"
@@ -19,7 +20,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 const JsonSchema& hunt_schema() {
-  static const JsonSchema instance(Json::parse(hunt_schema_text()));
+  static const JsonSchema instance(
+      json_from_outside<Json>(hunt_schema_text(), "the hunts' schema").value());
   return instance;
 }
 

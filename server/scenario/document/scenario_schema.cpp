@@ -1,5 +1,6 @@
 #include "server/scenario/document/scenario_schema.hpp"
 
+#include "core/outside/outside_json.hpp"
 #include "server/files/json_schema.hpp"
 
 namespace overfly::server {
@@ -8,7 +9,8 @@ namespace {
 using Json = nlohmann::json;
 
 const JsonSchema& schema() {
-  static const JsonSchema instance(Json::parse(scenario_schema_text()));
+  static const JsonSchema instance(
+      json_from_outside<Json>(scenario_schema_text(), "the scenarios' schema").value());
   return instance;
 }
 
