@@ -89,9 +89,9 @@ struct PictureRequest {
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
   int max_width_px = 1280;               ///< all but scenes are halved until they fit
-  /// kCamera, kScene: to be there sooner, a picture that has to be rendered waits at most
-  /// kPreviewTileWaitNs for ground, and a camera's one is halved so many times. 0 = no preview.
-  int preview_halvings = 0;
+  /// kCamera, kScene: to be there sooner, a picture that has to be rendered is limited to
+  /// kPreviewTileWaitNs, and a camera's one to half its size.
+  bool preview = false;
   /// The way to the client is slow: a recorded JPEG is encoded again, not passed on.
   bool sparing = false;
   /// Encodes the picture as video; it becomes a JPEG nevertheless if it is passed on as recorded,
@@ -129,7 +129,7 @@ struct Picture {
   bool grey = false;
   PictureCoding coding = PictureCoding::kJpeg;
   bool key = true;                   ///< does not need the picture before
-  bool preview = false;              ///< of a frame, rendered in less than its size
+  bool preview = false;              ///< of a frame, rendered in half its size
   std::optional<ColourScale> scale;  ///< of depth [m] and error pictures [grey levels]
   std::vector<SceneLabel> labels;    ///< of a scene
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;

@@ -89,7 +89,7 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   ribbons.refresh();
   const terrain::TileSource& tiles = *(*view)->world->tiles;
   auto scene = scene_view(settings, row.T_world_body, ribbons.centre(), tiles);
-  if (request.preview_halvings > 0) scene.tile_wait_ns = kPreviewTileWaitNs;
+  if (request.preview) scene.tile_wait_ns = kPreviewTileWaitNs;
   renderer::SceneContent content;
   std::vector<PlacedLabel> places;
   const bool onboard = settings.mode == SceneMode::kOnboard;

@@ -21,10 +21,6 @@ constexpr std::int64_t kLongestDrawingNs = 4 * kLongDrawingNs;
 /// A picture previewed after a jump is drawn in full once no other jump has followed for so long:
 /// the next preview would have to wait for it.
 constexpr std::int64_t kPreviewStandsNs = 200'000'000;
-/// A preview that is shown within 150 ms of a click has so long on the server, the way and the
-/// browser aside. After a longer one previews are a quarter of the size, until one is quick.
-constexpr std::int64_t kLongPreviewNs = 70'000'000;
-constexpr std::int64_t kQuickPreviewNs = 35'000'000;
 /// Pictures are not reduced below this quality, unless the client asks for it.
 constexpr int kLeastQuality = 30;
 
@@ -156,11 +152,10 @@ void PictureStreams::show_after_jump() {
 /// While processor time is short, because a real-time flight limits the pictures, video is made
 /// only for a client that needs it: it takes several times the time of a JPEG.
 void PictureStreams::fit_to_link(Stream* stream, PictureRequest* request) const {
-  stream->reduced = stream->preview = wants_preview(*stream);
+  stream->reduced = stream->preview = request->preview = wants_preview(*stream);
   if (stream->preview) {
-    request->preview_halvings = stream->preview_halvings;
-    request->scene.width_px >>= stream->preview_halvings;
-    request->scene.height_px >>= stream->preview_halvings;
+    request->scene.width_px >>= 1;
+    request->scene.height_px >>= 1;
   }
   if (!stream->moving) return;
   const Reduction reduction = reduction_at(link_.reduction());
@@ -265,18 +260,6 @@ void PictureStreams::pump(const std::vector<Instant>& instants,
   link_.note(moving, blocked, now_ns);
 }
 
-void PictureStreams::note_drawing(Stream* stream, std::int64_t drawing_ns) {
-  if (stream->preview) {
-    if (drawing_ns > kLongPreviewNs) stream->preview_halvings = 2;
-    if (drawing_ns < kQuickPreviewNs) stream->preview_halvings = 1;
-  } else if (stream->still) {
-    // One that was drawn quickly may have shown ground that was in memory: the next may not.
-    // Opening a world may have taken a minute: that is soon forgotten.
-    stream->drawing_ns =
-        std::max(std::min(drawing_ns, kLongestDrawingNs), stream->drawing_ns / 4 * 3);
-  }
-}
-
 PictureStreams::Stream* PictureStreams::find(const PictureTicket& ticket) {
   for (Stream& stream : streams_) {
     if (stream.id == ticket.stream_id && stream.ticket == ticket.number) return &stream;
@@ -304,7 +287,12 @@ void PictureStreams::ready(const PictureTicket& ticket,
   const bool frame = kind_of(stream->request.name) == PictureRequest::Kind::kCamera;
   // The whole frame was available: it need not follow.
   if (frame && stream->preview && !picture->preview) stream->preview = stream->reduced = false;
-  note_drawing(stream, now_ns - stream->requested_ns);
+  if (stream->still && !stream->preview) {
+    // One that was drawn quickly may have shown ground that was in memory: the next may not.
+    // Opening a world may have taken a minute: that is soon forgotten.
+    const std::int64_t drawing_ns = std::min(now_ns - stream->requested_ns, kLongestDrawingNs);
+    stream->drawing_ns = std::max(drawing_ns, stream->drawing_ns / 4 * 3);
+  }
   stream->slot.answered_with(picture->frame);
   stream->slot.sending();
   stream->sent = shown;

@@ -97,8 +97,7 @@ class PictureStreams {
     std::int64_t requested_ns = 0;       ///< when the newest was requested
     bool still = true;                   ///< the one requested last was to rest
     bool jumped = false;                 ///< the next one is the first after a jump
-    bool preview = false;                ///< the one requested last is in less than its size
-    int preview_halvings = 1;            ///< of the next one, of each side
+    bool preview = false;                ///< the one requested last is in half the size
     std::int64_t drawing_ns = 0;         ///< of one that rests, in full detail
     std::size_t still_bytes = SendWindow::kLeastBytes;  ///< size of the last one that rests
     std::size_t moving_bytes = 0;  ///< size of the last one that moves; 0 = none yet
@@ -123,12 +122,10 @@ class PictureStreams {
   std::vector<Stream*> in_turn();
   /// Reduces a moving picture, and chooses its coding.
   void fit_to_link(Stream* stream, server::PictureRequest* request) const;
-  /// Whether its next picture is to be drawn in less than its size, to be there sooner.
+  /// Whether its next picture is to be drawn in half the size, to be there sooner.
   static bool wants_preview(const Stream& stream);
   /// Whether its preview is new, so that the whole picture is to wait.
   static bool preview_stands(const Stream& stream, std::int64_t now_ns);
-  /// Notes how long the picture requested last took.
-  static void note_drawing(Stream* stream, std::int64_t drawing_ns);
   [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
   static void count_unshown(Stream* stream);
   /// Adds the other runs that a scene shows. @return the sum of their frames

@@ -114,8 +114,7 @@ void FrameImages::remember(const ViewedFrame& frame, const StampedImage& live) {
   if (find(key) == nullptr) keep(key, {live.image, {}});
 }
 
-FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFrame& frame,
-                                                                 int halvings) {
+FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFrame& frame) {
   if (find(key_of("received", frame)) != nullptr) return std::optional(SharedImage());
   const auto again = renderers_.frames_of(frame.run_id);
   if (!again) return again.error();
@@ -124,7 +123,7 @@ FrameImages::Made<FrameImages::SharedImage> FrameImages::preview(const ViewedFra
   if (!maker.is_as_rendered(frame.camera, frame.row)) return std::optional(SharedImage());
   auto request = drawn_request(frame, maker);
   if (!request) return request.error();
-  for (int i = 0; i < halvings; ++i) request->camera = half_sized(request->camera);
+  request->camera = half_sized(request->camera);
   request->tile_wait_ns = kPreviewTileWaitNs;
   auto drawn = (*again)->renderer.render_camera(*request);
   if (!drawn) return drawn.error();

@@ -54,10 +54,9 @@ class FrameImages {
   [[nodiscard]] Made<SharedImage> received(const ViewedFrame& frame);
   /// Keeps a live image of the camera of `frame`, which may be asked for when it is not the newest.
   void remember(const ViewedFrame& frame, const StampedImage& live);
-  /// What the camera saw, rendered in its size halved `halvings` times. Null if the image is known
-  /// already, or if it is not only rendered (FrameRemaker::is_as_rendered): then received() gives
-  /// it.
-  [[nodiscard]] Made<SharedImage> preview(const ViewedFrame& frame, int halvings);
+  /// What the camera saw, rendered in half its size. Null if the image is known already, or if it
+  /// is not only rendered (FrameRemaker::is_as_rendered): then received() gives it.
+  [[nodiscard]] Made<SharedImage> preview(const ViewedFrame& frame);
   /// The coloured depth of the ground along the optical axis, at most `max_width_px` wide.
   [[nodiscard]] Made<ScaledImage> depth(const ViewedFrame& frame, int max_width_px);
   /// The received image as it lies on the ground, reduced if it is large.

@@ -104,11 +104,11 @@ FramePainter::Painted FramePainter::camera(const PictureRequest& request,
   if (fs::is_regular_file(recorded, error)) {
     return painted(encoder_.encode_file(recorded, row.frame, row.t_ns, request));
   }
-  if (request.preview_halvings > 0) {
-    const auto reduced = images_.preview(frame, request.preview_halvings);
-    if (!reduced) return reduced.error();
-    if (!*reduced) return std::optional<Picture>();
-    if (**reduced) return previewed(request, frame, **reduced);
+  if (request.preview) {
+    const auto half = images_.preview(frame);
+    if (!half) return half.error();
+    if (!*half) return std::optional<Picture>();
+    if (**half) return previewed(request, frame, **half);
   }
   const auto image = images_.received(frame);
   if (!image) return image.error();
@@ -118,8 +118,8 @@ FramePainter::Painted FramePainter::camera(const PictureRequest& request,
 
 FramePainter::Painted FramePainter::previewed(const PictureRequest& request,
                                               const ViewedFrame& frame,
-                                              const std::shared_ptr<const Image>& reduced) {
-  Result<Picture> picture = encoder_.encode({frame.row.frame, frame.row.t_ns, reduced}, request);
+                                              const std::shared_ptr<const Image>& half) {
+  Result<Picture> picture = encoder_.encode({frame.row.frame, frame.row.t_ns, half}, request);
   if (!picture) return picture.error();
   const PinholeCamera& whole = frame.timeline->cameras()[frame.camera].model.pinhole();
   picture->full_width_px = whole.width_px;

@@ -55,7 +55,7 @@ class FramePainter {
  private:
   [[nodiscard]] Painted previewed(const PictureRequest& request,
                                   const ViewedFrame& frame,
-                                  const std::shared_ptr<const Image>& reduced);
+                                  const std::shared_ptr<const Image>& half);
   [[nodiscard]] Painted scaled(const PictureRequest& request,
                                const ViewedFrame& frame,
                                const ScaledImage& image);

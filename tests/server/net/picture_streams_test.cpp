@@ -226,13 +226,13 @@ TEST_F(PictureStreamsTest, DoesNotPreviewSteps) {
 TEST_F(PictureStreamsTest, PreviewsAFrameThatTakesLongAfterAJump) {
   subscribe(false, true);
   const auto first = next(false);
-  EXPECT_FALSE(first->preview_halvings > 0);
+  EXPECT_FALSE(first->preview);
   drawing_ns_ = kLongNs;
   send();
   show_all();
   streams_.show_after_jump();
   const auto preview = next(false);
-  EXPECT_EQ(preview->preview_halvings, 1);
+  EXPECT_TRUE(preview->preview);
   EXPECT_EQ(preview->max_width_px, first->max_width_px);
   preview_ = true;
   send();
@@ -241,24 +241,7 @@ TEST_F(PictureStreamsTest, PreviewsAFrameThatTakesLongAfterAJump) {
   now_ns_ += kPreviewStandsNs;
   const auto whole = next(false);
   ASSERT_TRUE(whole);
-  EXPECT_FALSE(whole->preview_halvings > 0);
-}
-
-TEST_F(PictureStreamsTest, MakesPreviewsSmallerWhileTheyTakeLong) {
-  subscribe_scene();
-  const int width_px = show_scene(kLongNs);
-  const auto preview_width_px = [&](std::int64_t drawing_ns) {
-    streams_.show_after_jump();
-    const int shown_px = show_scene(drawing_ns);
-    now_ns_ += kPreviewStandsNs;
-    EXPECT_EQ(show_scene(kLongNs), width_px);
-    return shown_px;
-  };
-  EXPECT_EQ(preview_width_px(80'000'000), width_px / 2);
-  EXPECT_EQ(preview_width_px(60'000'000), width_px / 4);
-  EXPECT_EQ(preview_width_px(20'000'000), width_px / 4) << "not all are quick yet";
-  EXPECT_EQ(preview_width_px(60'000'000), width_px / 2);
-  EXPECT_EQ(preview_width_px(60'000'000), width_px / 2);
+  EXPECT_FALSE(whole->preview);
 }
 
 TEST_F(PictureStreamsTest, PreviewsForAWhileAfterAPictureThatTookLong) {
@@ -274,7 +257,7 @@ TEST_F(PictureStreamsTest, PreviewsForAWhileAfterAPictureThatTookLong) {
     streams_.show_after_jump();
     const auto request = next(false);
     ASSERT_TRUE(request);
-    if (request->preview_halvings == 0) break;
+    if (!request->preview) break;
     preview_ = true;
     send();
     show_all();
@@ -294,7 +277,7 @@ TEST_F(PictureStreamsTest, SendsAFrameOnceThatCameWholeInsteadOfItsPreview) {
   send();
   show_all();
   streams_.show_after_jump();
-  ASSERT_EQ(next(false)->preview_halvings, 1);
+  ASSERT_TRUE(next(false)->preview);
   send();
   show_all();
   now_ns_ += kPreviewStandsNs;

@@ -102,7 +102,7 @@ TEST_F(FramePictures, AReducedDepthKnowsTheSizeOfTheWholeImage) {
 TEST_F(FramePictures, APreviewShowsTheFrameInHalfItsSize) {
   const std::string id = fly(perfect());
   PictureRequest request = request_of(PictureRequest::Kind::kCamera, id);
-  request.preview_halvings = 1;
+  request.preview = true;
   const auto preview = picture(request);
   ASSERT_TRUE(preview.ok()) << preview.error().message;
   EXPECT_EQ(preview->frame, 8);
@@ -110,10 +110,7 @@ TEST_F(FramePictures, APreviewShowsTheFrameInHalfItsSize) {
   EXPECT_TRUE(preview->preview);
   EXPECT_EQ(preview->full_width_px, 160);
   EXPECT_EQ(preview->full_height_px, 120);
-  request.preview_halvings = 2;
-  EXPECT_EQ(picture(request)->width_px, 40);
-  EXPECT_EQ(picture(request)->full_width_px, 160);
-  request.preview_halvings = 0;
+  request.preview = false;
   EXPECT_EQ(picture(request)->width_px, 160);
   request.max_width_px = 80;
   const Image halved = decode_jpeg(*picture(request)->bytes).value();
@@ -129,7 +126,7 @@ TEST_F(FramePictures, AFrameThatIsNotOnlyRenderedHasNoPreview) {
   overrides.push_back(
       {"faults", nlohmann::json::parse(R"([{"kind":"blackout","at_s":1.5,"duration_s":0.4}])")});
   PictureRequest request = request_of(PictureRequest::Kind::kCamera, fly(overrides));
-  request.preview_halvings = 1;
+  request.preview = true;
   EXPECT_EQ(picture(request)->width_px, 160);
   overrides.erase(overrides.end() - 2);
   overrides.push_back(camera_with(R"("color":"grey")"));
