@@ -35,7 +35,7 @@ endfunction()
 # overfly_optimise(TARGET LEVEL)
 #
 # The level of optimisation in release builds, where less than CMake's -O3 is enough: -O2 takes a
-# tenth and -Og a third of the compiler's time less.
+# tenth and -Og four tenths of the compiler's time less.
 function(overfly_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   overfly_precompile(${target} ${level})
