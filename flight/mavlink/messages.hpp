@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/motion/pose.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/frame.hpp"
 
 namespace overfly::flight::mavlink {
@@ -88,11 +89,11 @@ struct Heartbeat {
   std::uint8_t autopilot = 0;     ///< MAV_AUTOPILOT
   std::uint8_t base_mode = 0;
   [[nodiscard]] bool armed() const { return (base_mode & 0x80U) != 0; }
-  /// Of an autopilot: ground stations, gimbals and cameras send 8 (MAV_AUTOPILOT_INVALID).
-  [[nodiscard]] bool is_autopilot() const { return autopilot != 8; }
+  [[nodiscard]] bool is_autopilot() const { return autopilot != kNoAutopilot; }
   /// A fixed-wing aircraft (MAV_TYPE 1) or one that takes off vertically (19 to 25) with ArduPilot.
   [[nodiscard]] bool is_ardu_plane() const {
-    return autopilot == 3 && (vehicle_type == 1 || (vehicle_type >= 19 && vehicle_type <= 25));
+    return autopilot == kArduPilot &&
+           (vehicle_type == 1 || (vehicle_type >= 19 && vehicle_type <= 25));
   }
 };
 [[nodiscard]] Heartbeat decode_heartbeat(const Frame& frame);

@@ -8,6 +8,7 @@
 #include "core/motion/pose.hpp"
 #include "core/sensors/measured_samples.hpp"
 #include "core/time.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/payload.hpp"
 
 namespace overfly::flight::mavlink {
@@ -115,10 +116,10 @@ GpsSample gps_sample(const Frame& frame, const GpsLayout& layout, const SensorCo
   const double lon_deg = 1e-7 * payload.at<std::int32_t>(12);
   const double alt_msl_m = 1e-3 * payload.at<std::int32_t>(16);
   sample.place = geodetic_from_deg(lat_deg, lon_deg, alt_msl_m + context.geoid_separation_m);
-  constexpr std::uint16_t kUnknown = 0xFFFF;
+  constexpr std::uint16_t kNoValue = 0xFFFF;
   const auto speed = payload.at<std::uint16_t>(layout.speed);
   const auto course = payload.at<std::uint16_t>(layout.course);
-  if (speed != kUnknown && course != kUnknown) {
+  if (speed != kNoValue && course != kNoValue) {
     const double course_rad = rad_from_deg(0.01 * course);
     sample.velocity_ned_m_s.x() = 0.01 * speed * std::cos(course_rad);
     sample.velocity_ned_m_s.y() = 0.01 * speed * std::sin(course_rad);
@@ -169,7 +170,6 @@ void add_samples(const Frame& frame, const SensorContext& context, SensorSamples
     case MessageId::kHighresImu:
       return add_high_resolution(frame, context, samples);
     case MessageId::kRawImu: {
-      constexpr std::uint8_t kArduPilot = 3;
       if (context.autopilot != kArduPilot) return;
       const std::int64_t t_ns = sample_time_ns(us_at(payload, 0), context);
       add_imu(t_ns, decode_imu(frame), samples);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/motion/pose.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/vehicle/report_fields.hpp"
 #include "flight/vehicle/sensor_report.hpp"
 
@@ -21,14 +22,13 @@ double heading_deg(const VehicleReport& report) {
 
 PayloadWriter heartbeat(const VehicleReport& report) {
   constexpr std::uint8_t kFixedWing = 1;
-  constexpr std::uint8_t kArduPilot = 3;
   constexpr std::uint8_t kCustomModeAndSimulation = 0x01 | 0x20;
   constexpr std::uint8_t kActive = 4;
   constexpr std::uint8_t kStandby = 3;
   return PayloadWriter(9)
       .put(0, static_cast<std::uint32_t>(report.mode))
       .put(4, kFixedWing)
-      .put(5, kArduPilot)
+      .put(5, flight::mavlink::kArduPilot)
       .put(6, static_cast<std::uint8_t>(kCustomModeAndSimulation | (report.armed ? 0x80 : 0)))
       .put(7, report.armed ? kActive : kStandby)
       .put(8, std::uint8_t{3});

@@ -22,21 +22,24 @@ Image halved(const Image& image) {
   return half;
 }
 
+/// @param image  its sides are powers of two
 float bilinear_repeated(const Image& image, double x, double y) {
-  const double fx = std::floor(x);
-  const double fy = std::floor(y);
-  const auto wrap = [](double v, int size) {
-    const int i = static_cast<int>(v) % size;
-    return i < 0 ? i + size : i;
+  const auto below = [](double v) {
+    const int truncated = static_cast<int>(v);
+    return truncated - (truncated > v ? 1 : 0);
   };
-  const int x0 = wrap(fx, image.width_px);
-  const int y0 = wrap(fy, image.height_px);
-  const int x1 = x0 + 1 == image.width_px ? 0 : x0 + 1;
-  const int y1 = y0 + 1 == image.height_px ? 0 : y0 + 1;
+  const int fx = below(x);
+  const int fy = below(y);
+  const int x0 = fx & (image.width_px - 1);
+  const int y0 = fy & (image.height_px - 1);
+  const int x1 = (fx + 1) & (image.width_px - 1);
+  const int y1 = (fy + 1) & (image.height_px - 1);
   const auto ax = static_cast<float>(x - fx);
   const auto ay = static_cast<float>(y - fy);
-  return (1.0F - ay) * ((1.0F - ax) * image.at(x0, y0) + ax * image.at(x1, y0)) +
-         ay * ((1.0F - ax) * image.at(x0, y1) + ax * image.at(x1, y1));
+  const std::uint8_t* const upper = &image.data[static_cast<std::size_t>(y0) * image.width_px];
+  const std::uint8_t* const lower = &image.data[static_cast<std::size_t>(y1) * image.width_px];
+  return (1.0F - ay) * ((1.0F - ax) * upper[x0] + ax * upper[x1]) +
+         ay * ((1.0F - ax) * lower[x0] + ax * lower[x1]);
 }
 
 /// Roll that follows rectangles of bank with a limited rate and smooth ends.

@@ -5,13 +5,13 @@
 
 #include "core/earth/gps_time.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/mavlink/autopilots.hpp"
 
 namespace overfly::flight::mavlink {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int64_t kStampUnitNs = 1000;
-constexpr std::uint8_t kArduPilot = 3;  // MAV_AUTOPILOT_ARDUPILOTMEGA
 
 // MAV_FRAME
 constexpr std::uint8_t kLocalNed = 1;

@@ -7,6 +7,7 @@
 
 #include "core/earth/geodesy.hpp"
 #include "flight/logs/local_grid.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/feedback/feedback_options.hpp"
 #include "flight/mavlink/feedback/feedback_track.hpp"
 #include "flight/mavlink/messages.hpp"
@@ -18,7 +19,7 @@ namespace overfly::flight::mavlink {
 struct FeedbackPlace {
   LocalFrame frame;  ///< the world's
   double geoid_separation_m = 0.0;
-  std::uint8_t autopilot = 3;  ///< MAV_AUTOPILOT
+  std::uint8_t autopilot = kArduPilot;  ///< MAV_AUTOPILOT
   /// Where the vehicle's local positions count from; needed but for GPS_INPUT.
   std::optional<logs::LocalOrigin> origin;
   /// The vehicle's own height and climb; needed if the estimate's height is not sent.

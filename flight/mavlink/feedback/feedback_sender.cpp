@@ -8,6 +8,7 @@
 
 #include "core/barrier.hpp"
 #include "core/time.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/feedback/feedback_message.hpp"
 
 namespace overfly::flight::mavlink {
@@ -114,7 +115,6 @@ void FeedbackSender::send(const FeedbackSample& sample,
                           const VehicleNow& now,
                           const VehicleState& state) {
   FeedbackPlace place{frame_, geoid_separation_m_, 3, std::nullopt, std::nullopt, 0.0, 0};
-  constexpr std::uint8_t kPx4 = 12;  // MAV_AUTOPILOT_PX4
   if (state.heartbeat) place.autopilot = state.heartbeat->autopilot;
   if (state.origin) {
     place.origin = logs::LocalOrigin{

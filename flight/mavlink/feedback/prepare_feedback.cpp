@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/parameters.hpp"
 
 namespace overfly::flight::mavlink {
 namespace {
 
-constexpr std::uint8_t kArduPilotFirmware = 3;  // MAV_AUTOPILOT_ARDUPILOTMEGA
 constexpr std::uint16_t kRequestMessageCommand = 512;
 constexpr const char* kHeightSource = "EK3_SRC1_POSZ";
 constexpr double kSourceGps = 3.0;
@@ -97,7 +97,7 @@ Status prepare_feedback(Exchange& exchange,
   if (options.message != FeedbackMessage::kGpsInput) {
     if (Status status = check_origin(exchange, options, origin); !status) return status;
   }
-  if (options.send_height || exchange.target().autopilot != kArduPilotFirmware) return {};
+  if (options.send_height || exchange.target().autopilot != kArduPilot) return {};
   return check_height_source(exchange, options);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/mavlink/autopilots.hpp"
 #include "flight/mavlink/messages.hpp"
 #include "flight/mavlink/payload.hpp"
 
@@ -29,7 +30,7 @@ struct HeldMessage {
 struct Target {
   std::uint8_t system = 1;
   std::uint8_t component = 1;
-  std::uint8_t autopilot = 3;  ///< MAV_AUTOPILOT: 3 ArduPilot, 12 PX4
+  std::uint8_t autopilot = kArduPilot;  ///< MAV_AUTOPILOT
   [[nodiscard]] std::string name() const {
     return "vehicle " + std::to_string(system) + "." + std::to_string(component);
   }

@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "core/text/number_text.hpp"
+#include "flight/mavlink/autopilots.hpp"
 
 namespace overfly::flight::mavlink {
 namespace {
 
 constexpr std::uint8_t kFloat = 9;
-constexpr std::uint8_t kPx4 = 12;
 constexpr std::int16_t kByName = -1;
 /// Missing parameters that are asked for at once.
 constexpr std::size_t kAskedAtOnce = 20;
