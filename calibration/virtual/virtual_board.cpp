@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "calibration/marker_dictionary.hpp"
@@ -31,13 +32,22 @@ const std::array<Eigen::Vector2d, kSamples>& hammersley() {
   return points;
 }
 
+/// std::floor, which is a call without SSE4.1. @pre |x| < 2^31
+int floor_of(double x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (truncated > x ? 1 : 0);
+}
+
 class BoardDrawing {
  public:
-  BoardDrawing(const CameraModel& camera,
+  /// @param rays  as BoardPainter keeps them
+  BoardDrawing(const PinholeCamera& size,
+               const std::vector<Eigen::Vector2d>& rays,
                const Board& board,
                const Pose& T_camera_board,
                const BoardPaint& paint)
-      : camera_(camera),
+      : size_(size),
+        rays_(rays),
         board_(board),
         paint_(paint),
         T_board_camera_(T_camera_board.inverse()),
@@ -48,14 +58,13 @@ class BoardDrawing {
   }
 
   RadianceImage draw() const {
-    const PinholeCamera& size = camera_.pinhole();
-    RadianceImage image(size.width_px, size.height_px, 1, paint_.background);
-    std::vector<BoardPoint> above = lattice_row(0);
-    for (int y = 0; y < size.height_px; ++y) {
-      std::vector<BoardPoint> below = lattice_row(y + 1);
-      for (int x = 0; x < size.width_px; ++x) {
+    RadianceImage image(size_.width_px, size_.height_px, 1, paint_.background);
+    std::vector<Corner> above = lattice_row(0);
+    for (int y = 0; y < size_.height_px; ++y) {
+      std::vector<Corner> below = lattice_row(y + 1);
+      for (int x = 0; x < size_.width_px; ++x) {
         const auto i = static_cast<std::size_t>(x);
-        image.at(x, y) = pixel({above[i], above[i + 1], below[i], below[i + 1]});
+        image.at(x, y) = pixel(above[i], above[i + 1], below[i], below[i + 1]);
       }
       above = std::move(below);
     }
@@ -63,18 +72,9 @@ class BoardDrawing {
   }
 
  private:
-  /// The board under the corners of the pixels along the upper edge of row y.
-  [[nodiscard]] std::vector<BoardPoint> lattice_row(int y) const {
-    std::vector<BoardPoint> row;
-    for (int x = 0; x <= camera_.pinhole().width_px; ++x) row.push_back(cast({x - 0.5, y - 0.5}));
-    return row;
-  }
-
-  [[nodiscard]] BoardPoint cast(const Eigen::Vector2d& pixel) const {
+  [[nodiscard]] BoardPoint cast(const Eigen::Vector2d& ray) const {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const auto ray = camera_.ray(pixel);
-    if (!ray) return {kNan, kNan};
-    const Eigen::Vector3d direction = R_board_camera_ * *ray;
+    const Eigen::Vector3d direction = R_board_camera_ * ray.homogeneous();
     const Eigen::Vector3d& origin = T_board_camera_.translation;
     const double range = -origin.z() / direction.z();
     if (!(range > 0.0) || !std::isfinite(range)) return {kNan, kNan};
@@ -91,14 +91,33 @@ class BoardDrawing {
     [[nodiscard]] bool operator==(const Part&) const = default;
   };
 
+  /// The corner of up to four pixels.
+  struct Corner {
+    BoardPoint p;
+    Part part;
+    bool on_plane = false;
+  };
+
+  /// The board under the corners of the pixels along the upper edge of row y.
+  [[nodiscard]] std::vector<Corner> lattice_row(int y) const {
+    std::vector<Corner> row(static_cast<std::size_t>(size_.width_px) + 1);
+    const std::size_t first = static_cast<std::size_t>(y) * row.size();
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      row[x].p = cast(rays_[first + x]);
+      row[x].on_plane = row[x].p.allFinite();
+      if (row[x].on_plane) row[x].part = part_of(row[x].p);
+    }
+    return row;
+  }
+
   [[nodiscard]] Part part_of(const BoardPoint& p) const {
     // Far from the board all is background.
-    const auto number = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
-    Part part{number(std::floor(p.x())), number(std::floor(p.y())), -1, -1};
+    const auto number = [](double x) { return floor_of(std::clamp(x, -1e6, 1e6)); };
+    Part part{number(p.x()), number(p.y()), -1, -1};
     if (!board_.markers || !on_squares(part) || (part.i + part.j) % 2 == 0) return part;
     const auto cell_of = [&](double along) {
-      const double cell = (along - marker_gap_) * marker_cells_per_square_;
-      return std::clamp(static_cast<int>(std::floor(cell)), -1, board_.markers->bits + 2);
+      const int cell = floor_of((along - marker_gap_) * marker_cells_per_square_);
+      return std::clamp(cell, -1, board_.markers->bits + 2);
     };
     part.col = cell_of(p.x() - part.i);
     part.row = cell_of(p.y() - part.j);
@@ -132,27 +151,93 @@ class BoardDrawing {
     return marker_cell(bits, marker, row, col) ? paint_.bright : paint_.dark;
   }
 
-  [[nodiscard]] float pixel(const std::array<BoardPoint, 4>& corners) const {
-    bool whole = true;
-    for (const BoardPoint& corner : corners) {
-      if (!corner.allFinite()) return paint_.background;
-    }
-    const Part part = part_of(corners[0]);
-    for (const BoardPoint& corner : corners) whole = whole && part_of(corner) == part;
-    return whole ? colour(part) : sampled(corners);
+  [[nodiscard]] float pixel(const Corner& a,
+                            const Corner& b,
+                            const Corner& c,
+                            const Corner& d) const {
+    if (!a.on_plane || !b.on_plane || !c.on_plane || !d.on_plane) return paint_.background;
+    const bool whole = a.part == b.part && a.part == c.part && a.part == d.part;
+    return whole ? colour(a.part) : sampled({a.p, b.p, c.p, d.p});
   }
 
   [[nodiscard]] float sampled(const std::array<BoardPoint, 4>& corners) const {
+    BoardPoint low = corners[0];
+    BoardPoint high = corners[0];
+    for (const BoardPoint& corner : corners) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+    const auto columns = lines_between(low.x(), high.x());
+    const auto rows = lines_between(low.y(), high.y());
+    if (!columns || !rows) {
+      return mean_of_samples(corners, [&](double x, double y) { return colour(part_of({x, y})); });
+    }
+    std::array<std::array<float, kMostLines + 1>, kMostLines + 1> colours;
+    for (std::size_t row = 0; row <= rows->count; ++row) {
+      for (std::size_t column = 0; column <= columns->count; ++column) {
+        colours[row][column] = colour(part_of({columns->middle(column), rows->middle(row)}));
+      }
+    }
+    return mean_of_samples(
+        corners, [&](double x, double y) { return colours[rows->below(y)][columns->below(x)]; });
+  }
+
+  /// @param colour_at  of a place on the board, in squares
+  template <typename ColourAt>
+  [[nodiscard]] static float mean_of_samples(const std::array<BoardPoint, 4>& corners,
+                                             const ColourAt& colour_at) {
     float sum = 0.0F;
     for (const Eigen::Vector2d& s : hammersley()) {
       const BoardPoint p = (1.0 - s.y()) * ((1.0 - s.x()) * corners[0] + s.x() * corners[1]) +
                            s.y() * ((1.0 - s.x()) * corners[2] + s.x() * corners[3]);
-      sum += colour(part_of(p));
+      sum += colour_at(p.x(), p.y());
     }
     return sum / kSamples;
   }
 
-  const CameraModel& camera_;
+  static constexpr std::size_t kMostLines = 4;
+
+  /// Where the colour may change along one axis, within an interval: edges of squares and, on
+  /// boards with markers, of their cells.
+  struct Lines {
+    double low = 0.0;
+    double high = 0.0;
+    std::array<double, kMostLines> at{};  ///< ascending
+    std::size_t count = 0;
+
+    [[nodiscard]] std::size_t below(double x) const {
+      std::size_t lines = 0;
+      for (std::size_t i = 0; i < count; ++i) lines += x >= at[i] ? 1 : 0;
+      return lines;
+    }
+    /// Of the part after so many lines.
+    [[nodiscard]] double middle(std::size_t lines) const {
+      return 0.5 * ((lines == 0 ? low : at[lines - 1]) + (lines == count ? high : at[lines]));
+    }
+  };
+
+  /// None if they are too many.
+  [[nodiscard]] std::optional<Lines> lines_between(double low, double high) const {
+    if (std::max(-low, high) > 1e6 || high - low > kMostLines) return std::nullopt;
+    Lines lines{low, high};
+    const auto add = [&](double at) {
+      if (at <= low || at > high) return true;
+      if (lines.count == kMostLines) return false;
+      lines.at[lines.count++] = at;
+      return true;
+    };
+    const int cells = board_.markers ? board_.markers->bits + 2 : -1;
+    for (int square = floor_of(low); square <= high; ++square) {
+      if (!add(square)) return std::nullopt;
+      for (int cell = 0; cell <= cells; ++cell) {
+        if (!add(square + marker_gap_ + cell / marker_cells_per_square_)) return std::nullopt;
+      }
+    }
+    return lines;
+  }
+
+  const PinholeCamera& size_;
+  const std::vector<Eigen::Vector2d>& rays_;
   const Board& board_;
   const BoardPaint& paint_;
   Pose T_board_camera_;
@@ -163,11 +248,23 @@ class BoardDrawing {
 
 }  // namespace
 
-RadianceImage draw_board(const CameraModel& camera,
-                         const Board& board,
-                         const Pose& T_camera_board,
-                         const BoardPaint& paint) {
-  return BoardDrawing(camera, board, T_camera_board, paint).draw();
+BoardPainter::BoardPainter(const CameraModel& camera) : camera_(camera) {
+  const PinholeCamera& size = camera.pinhole();
+  rays_.reserve((static_cast<std::size_t>(size.width_px) + 1) *
+                (static_cast<std::size_t>(size.height_px) + 1));
+  for (int y = 0; y <= size.height_px; ++y) {
+    for (int x = 0; x <= size.width_px; ++x) {
+      const auto ray = camera.ray({x - 0.5, y - 0.5});
+      rays_.push_back(ray ? Eigen::Vector2d(ray->head<2>())
+                          : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
+  }
+}
+
+RadianceImage BoardPainter::draw(const Board& board,
+                                 const Pose& T_camera_board,
+                                 const BoardPaint& paint) const {
+  return BoardDrawing(camera_.pinhole(), rays_, board, T_camera_board, paint).draw();
 }
 
 }  // namespace overfly::calibration

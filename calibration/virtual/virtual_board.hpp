@@ -1,6 +1,9 @@
 // Images of a board with a known pose, drawn through a camera model.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "calibration/board.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
@@ -18,15 +21,30 @@ struct BoardPaint {
 /// Width of the bright border around the squares, in squares.
 inline constexpr int kBoardBorder = 1;
 
-/// Draws a board. Each pixel is the mean over its area [x - 1/2, x + 1/2] x [y - 1/2, y + 1/2]: the
-/// pixel's corners are cast onto the board exactly (CameraModel::ray), and a pixel that no edge
-/// crosses has one colour. Others take 256 samples (Hammersley points; van der Corput 1935), whose
-/// places on the board are bilinear between the corners' (deviation below 1e-3 px).
-/// @param T_camera_board  may put parts of the board outside the image
-/// @pre the camera and the board are valid
-[[nodiscard]] RadianceImage draw_board(const CameraModel& camera,
-                                       const Board& board,
-                                       const Pose& T_camera_board,
-                                       const BoardPaint& paint = {});
+/// Draws boards through one camera. Keeps the rays of the pixels' corners (16 bytes each): through
+/// a lens they take longer to find than the rest of a picture.
+class BoardPainter {
+ public:
+  /// @pre the camera is valid
+  explicit BoardPainter(const CameraModel& camera);
+
+  [[nodiscard]] const CameraModel& camera() const { return camera_; }
+
+  /// Each pixel is the mean over its area [x - 1/2, x + 1/2] x [y - 1/2, y + 1/2]: the pixel's
+  /// corners are cast onto the board exactly (CameraModel::ray), and a pixel that no edge crosses
+  /// has one colour. Others take 256 samples (Hammersley points; van der Corput 1935), whose places
+  /// on the board are bilinear between the corners' (deviation below 1e-3 px).
+  /// @param T_camera_board  may put parts of the board outside the image
+  /// @pre the board is valid
+  [[nodiscard]] RadianceImage draw(const Board& board,
+                                   const Pose& T_camera_board,
+                                   const BoardPaint& paint = {}) const;
+
+ private:
+  CameraModel camera_;
+  /// Of the corners of the pixels, (width + 1) x (height + 1), row by row: x and y at z = 1; NaN
+  /// where the camera has none.
+  std::vector<Eigen::Vector2d> rays_;
+};
 
 }  // namespace overfly::calibration

@@ -42,12 +42,12 @@ Result<VirtualCamera> VirtualCamera::create(const VirtualCameraOptions& options,
 
 /// Lets auto-exposure settle before the first image that counts.
 void VirtualCamera::settle(int frames) {
-  const RadianceImage light = calibration::draw_board(model_, board_, poses_.front());
+  const RadianceImage light = painter_.draw(board_, poses_.front());
   for (int i = frames; i > 0; --i) (void)sensor_->expose(light, -i);
 }
 
 Image VirtualCamera::image(std::size_t view) {
-  const RadianceImage light = calibration::draw_board(model_, board_, poses_.at(view));
+  const RadianceImage light = painter_.draw(board_, poses_.at(view));
   return sensor_->expose(light, static_cast<std::int64_t>(view)).image;
 }
 

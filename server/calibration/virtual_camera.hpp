@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/board.hpp"
+#include "calibration/virtual/virtual_board.hpp"
 #include "core/camera/camera_model.hpp"
 #include "core/camera/image.hpp"
 #include "core/motion/pose.hpp"
@@ -32,16 +33,16 @@ class VirtualCamera {
                                       const calibration::Board& board);
 
   [[nodiscard]] std::size_t views() const { return poses_.size(); }
-  [[nodiscard]] const CameraModel& model() const { return model_; }
+  [[nodiscard]] const CameraModel& model() const { return painter_.camera(); }
   /// The image of a view; call it in order, because auto-exposure follows from the images before.
   [[nodiscard]] Image image(std::size_t view);
 
  private:
   VirtualCamera(const VirtualCameraOptions& options, const calibration::Board& board)
-      : model_(options.camera), board_(board) {}
+      : painter_(CameraModel(options.camera)), board_(board) {}
   void settle(int frames);
 
-  CameraModel model_;
+  calibration::BoardPainter painter_;
   calibration::Board board_;
   std::vector<Pose> poses_;
   std::unique_ptr<sensor::Sensor> sensor_;

@@ -12,8 +12,8 @@
 namespace overfly::calibration {
 namespace {
 
-Image image_of(const CameraModel& camera, const Pose& pose) {
-  return grey_from(draw_board(camera, kSampleBoard, pose));
+Image image_of(const BoardPainter& painter, const Pose& pose) {
+  return grey_from(painter.draw(kSampleBoard, pose));
 }
 
 CalibratorOptions options_for(DistortionModel model) {
@@ -34,10 +34,11 @@ void expect_within_limits(const Calibration& found, const CameraModel& truth) {
 
 TEST(Calibrator, RecoversARadtanCameraFromImages) {
   const CameraModel camera = radtan_camera();
+  const BoardPainter painter(camera);
   auto calibrator = Calibrator::create(options_for(DistortionModel::kRadtan));
   ASSERT_TRUE(calibrator.ok());
   for (const Pose& pose : virtual_views(camera, kSampleBoard, 18, 1)) {
-    const auto verdict = calibrator->add(image_of(camera, pose), "v");
+    const auto verdict = calibrator->add(image_of(painter, pose), "v");
     ASSERT_TRUE(verdict.ok());
     EXPECT_EQ(*verdict, ViewVerdict::kTaken);
   }
@@ -52,10 +53,11 @@ TEST(Calibrator, RecoversARadtanCameraFromImages) {
 
 TEST(Calibrator, RecoversAFisheyeFromImages) {
   const CameraModel camera = equidistant_camera();
+  const BoardPainter painter(camera);
   auto calibrator = Calibrator::create(options_for(DistortionModel::kEquidistant));
   ASSERT_TRUE(calibrator.ok());
   for (const Pose& pose : virtual_views(camera, kSampleBoard, 27, 1)) {
-    ASSERT_TRUE(calibrator->add(image_of(camera, pose), "v").ok());
+    ASSERT_TRUE(calibrator->add(image_of(painter, pose), "v").ok());
   }
   const auto found = calibrator->solve();
   ASSERT_TRUE(found.ok()) << found.error().message;
@@ -72,6 +74,7 @@ TEST(Calibrator, RecoversAFisheyeFromImages) {
 
 TEST(Calibrator, OfALiveCameraTakesStillViewsThatAddSomething) {
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   CalibratorOptions options = options_for(DistortionModel::kRadtan);
   options.live = true;
   auto calibrator = Calibrator::create(options);
@@ -80,7 +83,7 @@ TEST(Calibrator, OfALiveCameraTakesStillViewsThatAddSomething) {
   const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 9, 1);
   const Pose& other = poses.back();
   const auto add = [&](const Pose& pose, Capture capture = Capture::kUseful) {
-    return *calibrator->add(image_of(camera, pose), "v", capture);
+    return *calibrator->add(image_of(painter, pose), "v", capture);
   };
   // Whether the board moves is known from the second image on.
   EXPECT_EQ(add(poses[0]), ViewVerdict::kMoving);
@@ -96,7 +99,7 @@ TEST(Calibrator, OfALiveCameraTakesStillViewsThatAddSomething) {
   EXPECT_EQ(add(aside), ViewVerdict::kNothingNew);
   EXPECT_EQ(add(aside, Capture::kNow), ViewVerdict::kTaken);
   EXPECT_EQ(add(aside, Capture::kNow), ViewVerdict::kNearDuplicate);
-  Image empty = image_of(camera, poses[0]);
+  Image empty = image_of(painter, poses[0]);
   std::fill(empty.data.begin(), empty.data.end(), std::uint8_t{90});
   EXPECT_EQ(*calibrator->add(empty, "v"), ViewVerdict::kNoBoard);
   EXPECT_FALSE(calibrator->seen());
@@ -105,39 +108,42 @@ TEST(Calibrator, OfALiveCameraTakesStillViewsThatAddSomething) {
 
 TEST(Calibrator, TakesAsManyViewsAsItMay) {
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   CalibratorOptions options = options_for(DistortionModel::kRadtan);
   options.most_views = 4;
   auto calibrator = Calibrator::create(options);
   ASSERT_TRUE(calibrator.ok());
   const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 5, 1);
   for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(*calibrator->add(image_of(camera, poses[i]), "v"), ViewVerdict::kTaken);
+    EXPECT_EQ(*calibrator->add(image_of(painter, poses[i]), "v"), ViewVerdict::kTaken);
   }
-  EXPECT_EQ(*calibrator->add(image_of(camera, poses[4]), "v"), ViewVerdict::kEnough);
+  EXPECT_EQ(*calibrator->add(image_of(painter, poses[4]), "v"), ViewVerdict::kEnough);
   options.most_views = 3;
   EXPECT_FALSE(Calibrator::create(options).ok());
 }
 
 TEST(Calibrator, TakesAStillBoardOnce) {
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   auto calibrator = Calibrator::create(options_for(DistortionModel::kRadtan));
   ASSERT_TRUE(calibrator.ok());
   const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 2, 1);
-  EXPECT_EQ(*calibrator->add(image_of(camera, poses[0]), "a"), ViewVerdict::kTaken);
+  EXPECT_EQ(*calibrator->add(image_of(painter, poses[0]), "a"), ViewVerdict::kTaken);
   Pose nearly = poses[0];
   nearly.translation.x() += 0.002;  // 3 px of a diagonal of 800
-  EXPECT_EQ(*calibrator->add(image_of(camera, nearly), "b"), ViewVerdict::kNearDuplicate);
-  EXPECT_EQ(*calibrator->add(image_of(camera, poses[1]), "c"), ViewVerdict::kTaken);
+  EXPECT_EQ(*calibrator->add(image_of(painter, nearly), "b"), ViewVerdict::kNearDuplicate);
+  EXPECT_EQ(*calibrator->add(image_of(painter, poses[1]), "c"), ViewVerdict::kTaken);
   EXPECT_EQ(calibrator->names(), (std::vector<std::string>{"a", "c"}));
 }
 
 TEST(Calibrator, RejectsImagesOfAnotherSizeThanTheFirstView) {
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   auto calibrator = Calibrator::create(options_for(DistortionModel::kRadtan));
   ASSERT_TRUE(calibrator.ok());
   EXPECT_EQ(*calibrator->add(Image(64, 64, 1), "small"), ViewVerdict::kNoBoard);
   const std::vector<Pose> poses = virtual_views(camera, kSampleBoard, 1, 1);
-  EXPECT_EQ(*calibrator->add(image_of(camera, poses[0]), "a"), ViewVerdict::kTaken);
+  EXPECT_EQ(*calibrator->add(image_of(painter, poses[0]), "a"), ViewVerdict::kTaken);
   const auto other = calibrator->add(Image(64, 64, 1), "small");
   ASSERT_FALSE(other.ok());
   EXPECT_NE(other.error().message.find("64 x 64"), std::string::npos) << other.error().message;

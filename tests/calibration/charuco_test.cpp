@@ -22,8 +22,8 @@ Board charuco_board(int bits) { return {7, 5, 0.04, BoardMarkers{bits, 0.03}}; }
 /// Squares of at least 20 px in the virtual views of the sample cameras.
 Board coarse_charuco_board(int bits) { return {5, 5, 0.04, BoardMarkers{bits, 0.028}}; }
 
-Image charuco_image(const CameraModel& camera, const Board& board, const Pose& pose) {
-  return grey_from(slightly_blurred(draw_board(camera, board, pose)));
+Image charuco_image(const BoardPainter& painter, const Board& board, const Pose& pose) {
+  return grey_from(slightly_blurred(painter.draw(board, pose)));
 }
 
 /// Distances of the found corners from their projections; counts them.
@@ -116,10 +116,11 @@ TEST(Charuco, FindsTheProjectedCornersWithoutBias) {
     for (const CameraModel& camera : {radtan_camera(), equidistant_camera()}) {
       const std::vector<Pose> poses = virtual_views(camera, board, 5, 5);
       const std::vector<BoardView> truth = exact_views(camera, board, poses);
+      const BoardPainter painter(camera);
       Eigen::Vector2d mean = Eigen::Vector2d::Zero();
       int found_views = 0;
       for (std::size_t i = 0; i < poses.size(); ++i) {
-        const auto found = detect_board(charuco_image(camera, board, poses[i]), board);
+        const auto found = detect_board(charuco_image(painter, board, poses[i]), board);
         ASSERT_TRUE(found.ok());
         if (!*found) continue;  // its markers or gaps are too small
         const FoundCorners compared = compare(**found, truth[i]);
@@ -137,13 +138,14 @@ TEST(Charuco, FindsTheProjectedCornersWithoutBias) {
 TEST(Charuco, NumbersTheCornersOfAPartOfATurnedBoard) {
   const Board board = charuco_board(4);
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   const Eigen::Vector3d middle(3 * 0.04, 2 * 0.04, 0.0);
   for (const double turn_deg : {0.0, 90.0, 145.0, 180.0, 270.0}) {
     const Eigen::Quaterniond R(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()) *
                                Eigen::AngleAxisd(rad_from_deg(turn_deg), Eigen::Vector3d::UnitZ()));
     // The middle of the board lies near the image's left edge.
     const Pose pose{R, Eigen::Vector3d(-0.2, 0, 0.45) - R * middle};
-    Image image = charuco_image(camera, board, pose);
+    Image image = charuco_image(painter, board, pose);
     // A hand before the board.
     for (int y = 200; y < 260; ++y) {
       for (int x = 100; x < 160; ++x) image.at(x, y) = 120;
@@ -166,20 +168,22 @@ TEST(Charuco, FindsNothingInNoiseAndWithoutMarkers) {
   ASSERT_TRUE(found.ok());
   EXPECT_FALSE(found->has_value());
   const CameraModel camera = pinhole_camera();
+  const BoardPainter painter(camera);
   const Board plain{7, 5, 0.04};
   const Pose pose = virtual_views(camera, plain, 1, 1).front();
-  found = detect_board(charuco_image(camera, plain, pose), board);
+  found = detect_board(charuco_image(painter, plain, pose), board);
   ASSERT_TRUE(found.ok());
   EXPECT_FALSE(found->has_value());
 }
 
 TEST(Charuco, CalibratesARadtanCamera) {
   const CameraModel camera = radtan_camera();
+  const BoardPainter painter(camera);
   const Board board = coarse_charuco_board(4);
   auto calibrator = Calibrator::create({board, {DistortionModel::kRadtan, false}, false});
   ASSERT_TRUE(calibrator.ok());
   for (const Pose& pose : virtual_views(camera, board, 36, 1)) {
-    ASSERT_TRUE(calibrator->add(charuco_image(camera, board, pose), "v").ok());
+    ASSERT_TRUE(calibrator->add(charuco_image(painter, board, pose), "v").ok());
   }
   EXPECT_GE(calibrator->views().size(), 15U);
   const auto found = calibrator->solve();

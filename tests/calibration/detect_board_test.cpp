@@ -22,9 +22,9 @@ CornerErrors errors_of(const CameraModel& camera, const std::vector<Pose>& poses
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0.0;
   int count = 0;
+  const BoardPainter painter(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto found =
-        detect_board(grey_from(draw_board(camera, kSampleBoard, poses[i])), kSampleBoard);
+    const auto found = detect_board(grey_from(painter.draw(kSampleBoard, poses[i])), kSampleBoard);
     EXPECT_TRUE(found.ok() && found->has_value()) << "view " << i;
     if (!found || !*found) continue;
     for (std::size_t c = 0; c < truth[i].corners.size(); ++c) {
@@ -69,7 +69,7 @@ TEST(DetectBoard, FindsNothingInNoiseAndInPartsOfABoard) {
   const CameraModel camera = pinhole_camera();
   const Pose half_outside{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.5}};
   const auto part =
-      detect_board(grey_from(draw_board(camera, kSampleBoard, half_outside)), kSampleBoard);
+      detect_board(grey_from(BoardPainter(camera).draw(kSampleBoard, half_outside)), kSampleBoard);
   ASSERT_TRUE(part.ok());
   EXPECT_FALSE(part->has_value());
 }

@@ -17,7 +17,7 @@ RadianceImage upright(const Eigen::Vector2d& first_corner_px) {
   const CameraModel camera(PinholeCamera{160, 120, 10 * kSquarePx, 10 * kSquarePx, 0.0, 0.0});
   const Pose pose{Eigen::Quaterniond::Identity(),
                   {first_corner_px.x() / kSquarePx, first_corner_px.y() / kSquarePx, 10.0}};
-  return draw_board(camera, {4, 3, 1.0}, pose, {0.0F, 1.0F, 0.5F});
+  return BoardPainter(camera).draw({4, 3, 1.0}, pose, {0.0F, 1.0F, 0.5F});
 }
 
 TEST(VirtualBoard, CoversPixelsByTheirArea) {

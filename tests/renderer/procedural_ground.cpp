@@ -1,8 +1,11 @@
 #include "tests/renderer/procedural_ground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace overfly::testing {
 
@@ -22,28 +25,50 @@ double lattice(std::int64_t x, std::int64_t y, std::uint64_t octave) {
   return static_cast<double>((h ^ (h >> 31U)) >> 11U) * 0x1.0p-53;
 }
 
-double smooth_noise(double x, double y, std::uint64_t octave) {
-  const double fx = std::floor(x);
-  const double fy = std::floor(y);
-  const auto ease = [](double t) { return t * t * (3.0 - 2.0 * t); };
-  const double a = ease(x - fx);
-  const double b = ease(y - fy);
-  const auto at = [&](int dx, int dy) {
-    return lattice(static_cast<std::int64_t>(fx) + dx, static_cast<std::int64_t>(fy) + dy, octave);
+constexpr std::size_t kOctaves = 7;
+
+/// The values of `lattice` around the last place of an octave: the next place is often in the same
+/// square.
+struct LatticeSquare {
+  std::int64_t x = std::numeric_limits<std::int64_t>::max();
+  std::int64_t y = 0;
+  double at[2][2] = {};  ///< [y][x]
+};
+
+double smooth_noise(double x, double y, std::uint64_t octave, LatticeSquare& square) {
+  const auto below = [](double v) {
+    const auto truncated = static_cast<std::int64_t>(v);
+    return truncated - (static_cast<double>(truncated) > v ? 1 : 0);
   };
-  return (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
+  const std::int64_t fx = below(x);
+  const std::int64_t fy = below(y);
+  if (fx != square.x || fy != square.y) {
+    square.x = fx;
+    square.y = fy;
+    for (const int dy : {0, 1}) {
+      for (const int dx : {0, 1}) square.at[dy][dx] = lattice(fx + dx, fy + dy, octave);
+    }
+  }
+  const auto ease = [](double t) { return t * t * (3.0 - 2.0 * t); };
+  const double a = ease(x - static_cast<double>(fx));
+  const double b = ease(y - static_cast<double>(fy));
+  const auto& at = square.at;
+  return (1 - b) * ((1 - a) * at[0][0] + a * at[0][1]) + b * ((1 - a) * at[1][0] + a * at[1][1]);
 }
 
 }  // namespace
 
 double natural_paint(double east_m, double north_m) {
+  thread_local std::array<LatticeSquare, kOctaves> squares;
   double sum = 0.0;
   double amplitude = 60.0;
-  double wavelength_m = 96.0;
-  for (std::uint64_t octave = 0; octave < 7; ++octave) {
-    sum += amplitude * (smooth_noise(east_m / wavelength_m, north_m / wavelength_m, octave) - 0.5);
+  double x = east_m / 96.0;  // in wavelengths of the octave
+  double y = north_m / 96.0;
+  for (std::size_t octave = 0; octave < kOctaves; ++octave) {
+    sum += amplitude * (smooth_noise(x, y, octave, squares[octave]) - 0.5);
     amplitude *= 0.75;
-    wavelength_m *= 0.5;
+    x *= 2.0;
+    y *= 2.0;
   }
   return std::clamp(120.0 + sum, 0.0, 255.0);
 }
