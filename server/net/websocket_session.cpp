@@ -134,6 +134,21 @@ class WebSocketSession final : public ViewerPort,
     if (!contained(step, fail)) (void)contained([this] { end(); }, [](const char*) {});
   }
 
+  /// Lets a session that is still there take a step on its own thread. Callable on any thread.
+  template <typename Step>
+  static void post_step(const std::weak_ptr<WebSocketSession>& weak,
+                        ServerContext& context,
+                        Step step) {
+    context.deliver([&] {
+      const auto self = weak.lock();
+      if (!self) return;
+      asio::post(self->ws_.get_executor(), [weak, step = std::move(step)]() mutable {
+        const auto session = weak.lock();
+        if (session) session->attempt([&] { step(*session); });
+      });
+    });
+  }
+
   std::shared_ptr<ServerContext> context_;
   std::unique_ptr<ConnectionTable::Place> place_;
   websocket::stream<beast::tcp_stream, false> ws_;  ///< pictures are compressed already
@@ -240,13 +255,8 @@ void WebSocketSession::open(std::function<Timeline(server::RunManager&)> opened)
           timeline = Error{ErrorCode::kInternal, std::string("a run cannot be opened: ") + what};
           context->log("error", timeline.error().message);
         });
-    context->deliver([&] {
-      const auto self = weak.lock();
-      if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, timeline]() mutable {
-        const auto session = weak.lock();
-        if (session) session->attempt([&] { session->run_opened(std::move(timeline)); });
-      });
+    post_step(weak, *context, [timeline](WebSocketSession& session) mutable {
+      session.run_opened(std::move(timeline));
     });
   });
 }
@@ -269,14 +279,7 @@ void WebSocketSession::work(std::function<std::function<void()>()> slow) {
                       context->log("error", std::string("work for a viewer failed: ") + what);
                     });
     if (!then) return;
-    context->deliver([&] {
-      const auto self = weak.lock();
-      if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, then] {
-        const auto session = weak.lock();
-        if (session) session->attempt([&] { session->finish_work(then); });
-      });
-    });
+    post_step(weak, *context, [then](WebSocketSession& session) { session.finish_work(then); });
   });
 }
 
@@ -311,13 +314,8 @@ void WebSocketSession::send_picture(const PictureTicket& ticket,
 void WebSocketSession::draw(const PictureTicket& ticket, const server::PictureRequest& request) {
   const auto done = [weak = weak_from_this(), context = context_, ticket](
                         const Result<server::Picture>& picture) {
-    context->deliver([&] {
-      const auto self = weak.lock();
-      if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, ticket, picture] {
-        const auto session = weak.lock();
-        if (session) session->attempt([&] { session->picture_ready(ticket, picture); });
-      });
+    post_step(weak, *context, [ticket, picture](WebSocketSession& session) {
+      session.picture_ready(ticket, picture);
     });
   };
   server::PictureRequest drawn = request;
