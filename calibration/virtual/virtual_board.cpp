@@ -16,20 +16,27 @@ namespace {
 /// Place on the board, in squares from the first inner corner; NaN where a ray misses its plane.
 using BoardPoint = Eigen::Vector2d;
 
-constexpr int kSamples = 256;
+constexpr std::size_t kSamples = 256;
 
-/// Points i / n and the bit-reversed i: any interval of x or of y holds its share of them.
-const std::array<Eigen::Vector2d, kSamples>& hammersley() {
-  static const std::array<Eigen::Vector2d, kSamples> points = [] {
-    std::array<Eigen::Vector2d, kSamples> made;
+/// Places in a pixel, in [0, 1].
+struct Samples {
+  std::array<double, kSamples> right;
+  std::array<double, kSamples> down;
+};
+
+/// Points i / n and the bit-reversed i: any interval of either holds its share of them.
+const Samples& hammersley() {
+  static const Samples samples = [] {
+    Samples made;
     for (unsigned i = 0; i < kSamples; ++i) {
       unsigned reversed = 0;
       for (unsigned bit = 0; bit < 8; ++bit) reversed |= ((i >> bit) & 1U) << (7U - bit);
-      made[i] = {(i + 0.5) / kSamples, (reversed + 0.5) / kSamples};
+      made.right[i] = (i + 0.5) / kSamples;
+      made.down[i] = (reversed + 0.5) / kSamples;
     }
     return made;
   }();
-  return points;
+  return samples;
 }
 
 /// std::floor, which is a call without SSE4.1. @pre |x| < 2^31
@@ -186,12 +193,23 @@ class BoardDrawing {
   template <typename ColourAt>
   [[nodiscard]] static float mean_of_samples(const std::array<BoardPoint, 4>& corners,
                                              const ColourAt& colour_at) {
+    const Samples& samples = hammersley();
+    // One after the other, so that the compiler computes several samples at once.
+    std::array<double, kSamples> x;
+    std::array<double, kSamples> y;
+    const auto mix =
+        [&](double a, double b, double c, double d, std::array<double, kSamples>& mixed) {
+          for (std::size_t i = 0; i < kSamples; ++i) {
+            const double right = samples.right[i];
+            const double down = samples.down[i];
+            mixed[i] = (1.0 - down) * ((1.0 - right) * a + right * b) +
+                       down * ((1.0 - right) * c + right * d);
+          }
+        };
+    mix(corners[0].x(), corners[1].x(), corners[2].x(), corners[3].x(), x);
+    mix(corners[0].y(), corners[1].y(), corners[2].y(), corners[3].y(), y);
     float sum = 0.0F;
-    for (const Eigen::Vector2d& s : hammersley()) {
-      const BoardPoint p = (1.0 - s.y()) * ((1.0 - s.x()) * corners[0] + s.x() * corners[1]) +
-                           s.y() * ((1.0 - s.x()) * corners[2] + s.x() * corners[3]);
-      sum += colour_at(p.x(), p.y());
-    }
+    for (std::size_t i = 0; i < kSamples; ++i) sum += colour_at(x[i], y[i]);
     return sum / kSamples;
   }
 
