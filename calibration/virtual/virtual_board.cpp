@@ -45,15 +45,25 @@ int floor_of(double x) {
   return truncated - (truncated > x ? 1 : 0);
 }
 
+/// Appends the rays of the pixels' corners along the upper edge of row y, as BoardPainter keeps
+/// them.
+void append_rays(const CameraModel& camera, int y, std::vector<Eigen::Vector2d>& rays) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (int x = 0; x <= camera.pinhole().width_px; ++x) {
+    const auto ray = camera.ray({x - 0.5, y - 0.5});
+    rays.emplace_back(ray ? ray->x() : kNan, ray ? ray->y() : kNan);
+  }
+}
+
 class BoardDrawing {
  public:
   /// @param rays  as BoardPainter keeps them
-  BoardDrawing(const PinholeCamera& size,
+  BoardDrawing(const CameraModel& camera,
                const std::vector<Eigen::Vector2d>& rays,
                const Board& board,
                const Pose& T_camera_board,
                const BoardPaint& paint)
-      : size_(size),
+      : camera_(camera),
         rays_(rays),
         board_(board),
         paint_(paint),
@@ -65,11 +75,12 @@ class BoardDrawing {
   }
 
   RadianceImage draw() const {
-    RadianceImage image(size_.width_px, size_.height_px, 1, paint_.background);
+    const PinholeCamera& size = camera_.pinhole();
+    RadianceImage image(size.width_px, size.height_px, 1, paint_.background);
     std::vector<Corner> above = lattice_row(0);
-    for (int y = 0; y < size_.height_px; ++y) {
+    for (int y = 0; y < size.height_px; ++y) {
       std::vector<Corner> below = lattice_row(y + 1);
-      for (int x = 0; x < size_.width_px; ++x) {
+      for (int x = 0; x < size.width_px; ++x) {
         const auto i = static_cast<std::size_t>(x);
         image.at(x, y) = pixel(above[i], above[i + 1], below[i], below[i + 1]);
       }
@@ -107,10 +118,13 @@ class BoardDrawing {
 
   /// The board under the corners of the pixels along the upper edge of row y.
   [[nodiscard]] std::vector<Corner> lattice_row(int y) const {
-    std::vector<Corner> row(static_cast<std::size_t>(size_.width_px) + 1);
-    const std::size_t first = static_cast<std::size_t>(y) * row.size();
+    std::vector<Corner> row(static_cast<std::size_t>(camera_.pinhole().width_px) + 1);
+    std::vector<Eigen::Vector2d> found;
+    if (rays_.empty()) append_rays(camera_, y, found);
+    const Eigen::Vector2d* const rays =
+        rays_.empty() ? found.data() : &rays_[static_cast<std::size_t>(y) * row.size()];
     for (std::size_t x = 0; x < row.size(); ++x) {
-      row[x].p = cast(rays_[first + x]);
+      row[x].p = cast(rays[x]);
       row[x].on_plane = row[x].p.allFinite();
       if (row[x].on_plane) row[x].part = part_of(row[x].p);
     }
@@ -254,7 +268,7 @@ class BoardDrawing {
     return lines;
   }
 
-  const PinholeCamera& size_;
+  const CameraModel& camera_;
   const std::vector<Eigen::Vector2d>& rays_;
   const Board& board_;
   const BoardPaint& paint_;
@@ -268,21 +282,17 @@ class BoardDrawing {
 
 BoardPainter::BoardPainter(const CameraModel& camera) : camera_(camera) {
   const PinholeCamera& size = camera.pinhole();
-  rays_.reserve((static_cast<std::size_t>(size.width_px) + 1) *
-                (static_cast<std::size_t>(size.height_px) + 1));
-  for (int y = 0; y <= size.height_px; ++y) {
-    for (int x = 0; x <= size.width_px; ++x) {
-      const auto ray = camera.ray({x - 0.5, y - 0.5});
-      rays_.push_back(ray ? Eigen::Vector2d(ray->head<2>())
-                          : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    }
-  }
+  const std::size_t count = (static_cast<std::size_t>(size.width_px) + 1) *
+                            (static_cast<std::size_t>(size.height_px) + 1);
+  if (count > kMostKeptRays) return;
+  rays_.reserve(count);
+  for (int y = 0; y <= size.height_px; ++y) append_rays(camera_, y, rays_);
 }
 
 RadianceImage BoardPainter::draw(const Board& board,
                                  const Pose& T_camera_board,
                                  const BoardPaint& paint) const {
-  return BoardDrawing(camera_.pinhole(), rays_, board, T_camera_board, paint).draw();
+  return BoardDrawing(camera_, rays_, board, T_camera_board, paint).draw();
 }
 
 }  // namespace overfly::calibration

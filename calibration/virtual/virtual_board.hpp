@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "calibration/board.hpp"
@@ -21,10 +22,13 @@ struct BoardPaint {
 /// Width of the bright border around the squares, in squares.
 inline constexpr int kBoardBorder = 1;
 
-/// Draws boards through one camera. Keeps the rays of the pixels' corners (16 bytes each): through
-/// a lens they take longer to find than the rest of a picture.
+/// Draws boards through one camera. Keeps the rays of the pixels' corners, because through a lens
+/// they take longer to find than the rest of a picture.
 class BoardPainter {
  public:
+  /// 64 MiB, a camera of 4 megapixels. Those of larger cameras are found for each picture.
+  static constexpr std::size_t kMostKeptRays = std::size_t{1} << 22U;
+
   /// @pre the camera is valid
   explicit BoardPainter(const CameraModel& camera);
 
@@ -43,7 +47,7 @@ class BoardPainter {
  private:
   CameraModel camera_;
   /// Of the corners of the pixels, (width + 1) x (height + 1), row by row: x and y at z = 1; NaN
-  /// where the camera has none.
+  /// where the camera has none. Empty if they would be too many.
   std::vector<Eigen::Vector2d> rays_;
 };
 

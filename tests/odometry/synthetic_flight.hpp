@@ -18,6 +18,7 @@ namespace overfly::odometry::testing {
 class SyntheticGround {
  public:
   /// @param texture one channel; row 0 is the north
+  /// @pre the texture's sides are powers of two
   /// @param relief_m half the height between valley and hill; 0 = flat
   SyntheticGround(Image texture, double texel_m, double relief_m);
   /// Fields, furrows, hedges and speckle at all scales, repeating every size_px texels.
