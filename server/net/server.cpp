@@ -95,6 +95,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_log_routes(&context->router, {&context->logs, readers, progress});
   add_trajectory_routes(&context->router, &context->trajectories, readers);
   add_difference_routes(&context->router, &runs, readers);
+  add_report_routes(&context->router, &runs, drawers);
   const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers};
   add_sweep_routes(&context->router, sweeps);
   add_sweep_start_routes(&context->router, sweeps);

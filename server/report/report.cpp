@@ -169,7 +169,8 @@ Status add_figures(const ReportContent& content, const ReportOptions& options, P
     const std::vector<ReportEntry> entries = entries_of(content, sets[i]);
     const std::string id = "flight-" + std::to_string(i + 1);
     if (options.notice) options.notice("drawing " + run.id);
-    const Result<std::string> tracks = track_figures(content, run, entries, id, options.cancel);
+    const Result<std::string> tracks =
+        track_figures(content, run, entries, id, {options.open_world, options.cancel});
     if (!tracks) return tracks.error();
     page.add("<section id=\"" + id + "\">\n" + heading(2, set_title(content, sets[i])));
     page.add(*tracks);

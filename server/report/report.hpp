@@ -11,6 +11,7 @@
 
 #include "core/result.hpp"
 #include "evaluation/evaluation.hpp"
+#include "server/report/figures/map_picture.hpp"
 #include "server/report/report_content.hpp"
 
 namespace overfly::server::report {
@@ -26,6 +27,7 @@ struct ReportOptions {
   std::uint64_t max_bytes = kMaxReportBytes;
   std::size_t max_rows = kMaxReportRows;
   const std::atomic<bool>* cancel = nullptr;  ///< may be null
+  OpenRunWorld open_world{};                  ///< as MapOptions::open_world
   /// Told each step, for people. May be empty.
   std::function<void(const std::string&)> notice{};
 };

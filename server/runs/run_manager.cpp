@@ -214,6 +214,16 @@ Result<std::shared_ptr<const terrain::World>> RunManager::world_of(
   return bare_world(*opened);
 }
 
+Result<std::shared_ptr<const OpenedWorld>> RunManager::ready_world_of(
+    const std::string& id, const std::function<bool()>& cancelled) {
+  const Result<Scenario> scenario = scenario_of(id);
+  if (!scenario) return scenario.error();
+  if (world_must_be_made(*scenario)) {
+    return Error{ErrorCode::kNotFound, "the built-in world is not on this machine"};
+  }
+  return impl_->worlds.get(*scenario, [&](double) { return !cancelled || !cancelled(); });
+}
+
 const fs::path& RunManager::sweeps_folder() const { return impl_->options.sweeps_folder; }
 const fs::path& RunManager::studies_folder() const { return impl_->options.studies_folder; }
 

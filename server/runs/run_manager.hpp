@@ -102,6 +102,10 @@ class RunManager {
   /// Errors: kNotFound; as open_scenario_world.
   [[nodiscard]] Result<std::shared_ptr<const terrain::World>> world_of(
       const std::string& id, const std::function<bool()>& cancelled = {});
+  /// The same with its source files, if nothing has to be made for it.
+  /// Errors: as world_of; kNotFound if the built-in world is not on this machine.
+  [[nodiscard]] Result<std::shared_ptr<const OpenedWorld>> ready_world_of(
+      const std::string& id, const std::function<bool()>& cancelled = {});
   /// RunManagerOptions::sweeps_folder
   [[nodiscard]] const std::filesystem::path& sweeps_folder() const;
   /// RunManagerOptions::studies_folder

@@ -111,6 +111,18 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     await page.locator('.dv-tab', { hasText: /^Errors$/ }).click();
   });
 
+  step('saves a report of both runs as one file', async () => {
+    const saved = page.waitForEvent('download');
+    await page.locator('[data-role=report]').click();
+    const download = await saved;
+    assert.equal(download.suggestedFilename(), 'overfly-report-2-runs.html');
+    const html = readFileSync(await download.path(), 'utf8');
+    assert.match(html, /<section id="differences">/);
+    for (const id of [kSlow, kFast]) assert.ok(html.includes(id), `${id} is in the report`);
+    assert.equal(html.match(/data:image\/jpeg;base64,/g)?.length, 2, 'each flight has its map');
+    await page.locator('.notice', { hasText: 'Saved as overfly-report-2-runs.html' }).waitFor();
+  });
+
   step('orders the runs by their errors', async () => {
     const { runs } = await getJson(stage.server, '/runs');
     const errors = new Map(runs.map(({ id, results }) => [id, results[0].position_rmse_m]));

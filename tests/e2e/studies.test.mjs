@@ -108,6 +108,10 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     const flights = page.locator('[data-role=study-flights] tbody tr');
     assert.equal(await flights.count(), 5);
     await dashboard.screenshot('explained_1280x800');
+    const address = await page.getByRole('link', { name: 'Open as a page' }).getAttribute('href');
+    const written = await (await fetch(new URL(address, page.url()))).text();
+    assert.match(written, /<svg/);
+    assert.match(written, /Injected faults/i);
   });
 
   step('opens an evidence flight, and the address opens the study again', async () => {

@@ -49,6 +49,7 @@ import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
 import { lookFrom, showText, viewText } from './store/scene/scene_look';
 import { SceneControl } from './store/scene/scene_control';
+import { ReportMaker } from './store/runs/report_maker';
 import { ScoreDesk } from './store/scoring/score_desk';
 import { Sensors } from './store/sensors/sensors';
 import { Session } from './store/session';
@@ -102,6 +103,7 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
 const probe = new PixelProbe(store, rest, later);
+const reports = new ReportMaker(store, rest, notices);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
@@ -147,6 +149,7 @@ const context = {
   missions,
   sweeps,
   studies,
+  reports,
   rest,
   notices,
   client,

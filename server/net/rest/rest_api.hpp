@@ -31,6 +31,8 @@ void add_run_routes(RestRouter* router, server::RunManager* runs);
 void add_difference_routes(RestRouter* router,
                            server::RunManager* runs,
                            const ReadingRoutes& readers);
+/// report
+void add_report_routes(RestRouter* router, server::RunManager* runs, const ReadingRoutes& drawers);
 /// runs/{id}/metrics, estimators, manifest, scenario, trajectories/{name}
 void add_result_routes(RestRouter* router, server::RunManager* runs);
 /// runs/{id}/frames/{k}.jpg

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,24 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxRuns = 16;
+constexpr std::size_t kMaxComparedRuns = 16;
 /// Values longer than this are cut.
 constexpr std::size_t kMaxValueBytes = 1000;
-
-/// The ids in a list separated by commas. Errors: kInvalidArgument.
-Result<std::vector<std::string>> ids_of(const std::string& list) {
-  std::vector<std::string> ids;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    ids.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  const bool empty = std::find(ids.begin(), ids.end(), "") != ids.end();
-  if (empty || ids.size() < 2 || ids.size() > kMaxRuns) {
-    return bad_query("runs", list, "2 to " + std::to_string(kMaxRuns) + " ids with commas between");
-  }
-  return ids;
-}
 
 /// Does not cut within a character of UTF-8.
 std::string cut(const std::string& text) {
@@ -66,7 +50,7 @@ void add_difference_routes(RestRouter* router,
   router->add("GET",
               "/api/v1/differences",
               [runs, readers](const RouteCall& call, const Respond& respond) {
-                const Result<std::vector<std::string>> ids = ids_of(call.query_or("runs", ""));
+                const auto ids = run_ids_query_of(call, 2, kMaxComparedRuns);
                 if (!ids) return respond(error_response(ids.error()));
                 read_and_answer(readers,
                                 "what differs between runs",

@@ -1,5 +1,6 @@
 #include "server/net/rest/rest_reading.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/barrier.hpp"
@@ -44,6 +45,19 @@ std::optional<HttpResponse> not_json(const HttpRequest& request) {
   const std::string type = request.header("content-type");
   if (type == "application/json" || type.starts_with("application/json;")) return std::nullopt;
   return error_response(415, "unsupported_media_type", "the body must be application/json");
+}
+
+HttpResponse page_response(std::string html) {
+  HttpResponse response;
+  response.status = 200;
+  response.content_type = "text/html; charset=utf-8";
+  response.headers.emplace_back("Content-Security-Policy",
+                                "sandbox; default-src 'none'; img-src data:; style-src "
+                                "'unsafe-inline'; frame-ancestors 'self'; form-action 'none'; "
+                                "base-uri 'none'");
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = std::move(html);
+  return response;
 }
 
 void read_and_answer(const ReadingRoutes& routes,
@@ -94,6 +108,26 @@ Error bad_query(const std::string& name, const std::string& text, const std::str
   constexpr std::size_t kShown = 100;
   return {ErrorCode::kInvalidArgument,
           "query." + name + " = " + text.substr(0, kShown) + ": must be " + limit};
+}
+
+Result<std::vector<std::string>> run_ids_query_of(const RouteCall& call,
+                                                  std::size_t min,
+                                                  std::size_t max) {
+  const std::string list = call.query_or("runs", "");
+  std::vector<std::string> ids;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    ids.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  const bool empty = std::find(ids.begin(), ids.end(), "") != ids.end();
+  if (empty || ids.size() < min || ids.size() > max) {
+    return bad_query(
+        "runs",
+        list,
+        std::to_string(min) + " to " + std::to_string(max) + " ids with commas between");
+  }
+  return ids;
 }
 
 Result<TimeQuery> time_query_of(const RouteCall& call) {

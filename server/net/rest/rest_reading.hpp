@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/net/http/rest_router.hpp"
@@ -42,6 +43,10 @@ void respond_from_reader(const ReadingRoutes& routes,
 /// The response to a request whose body is not announced as JSON.
 [[nodiscard]] std::optional<HttpResponse> not_json(const HttpRequest& request);
 
+/// A page whose texts come from scenarios: it may run no script and load nothing, in a window of
+/// its own too.
+[[nodiscard]] HttpResponse page_response(std::string html);
+
 /// Errors: kInvalidArgument naming a parameter and its limit.
 [[nodiscard]] Error bad_query(const std::string& name,
                               const std::string& text,
@@ -56,6 +61,11 @@ template <typename Number>
   if (error != std::errc() || rest != end) return std::nullopt;
   return number;
 }
+
+/// The parameter `runs`: ids with commas between. Errors: kInvalidArgument.
+[[nodiscard]] Result<std::vector<std::string>> run_ids_query_of(const RouteCall& call,
+                                                                std::size_t min,
+                                                                std::size_t max);
 
 struct TimeQuery {
   std::optional<std::int64_t> from_ns;

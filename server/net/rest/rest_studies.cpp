@@ -47,21 +47,6 @@ HttpResponse start_study(StudyService& studies,
   return name ? study_response(studies, *name, 201) : study_refused(refusal, name.error());
 }
 
-/// The page runs no script and loads nothing, in a window of its own too: its texts come from
-/// scenarios.
-HttpResponse page_response(const std::string& text) {
-  HttpResponse response;
-  response.status = 200;
-  response.content_type = "text/html; charset=utf-8";
-  response.headers.emplace_back("Content-Security-Policy",
-                                "sandbox; default-src 'none'; img-src data:; style-src "
-                                "'unsafe-inline'; frame-ancestors 'self'; form-action 'none'; "
-                                "base-uri 'none'");
-  response.headers.emplace_back("Cache-Control", "no-cache");
-  response.body = text;
-  return response;
-}
-
 /// A handler that works with the study of the path on a reading thread.
 /// @param work  (StudyService&, name) -> Result<HttpResponse>
 template <typename Work>

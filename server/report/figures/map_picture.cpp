@@ -1,6 +1,7 @@
 #include "server/report/figures/map_picture.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,7 +25,9 @@ bool is_on_earth(const GroundExtent& extent) {
          extent.north_low_m >= -kFarthestM && extent.north_high_m <= kFarthestM;
 }
 
-Result<OpenedWorld> open_world_of(const ReportRun& run, const std::atomic<bool>* cancel) {
+Result<std::shared_ptr<const OpenedWorld>> open_world_of(const ReportRun& run,
+                                                         const MapOptions& options) {
+  if (options.open_world) return options.open_world(run.folder);
   if (run.scenario.is_null()) {
     return Error{ErrorCode::kUnreadable, "the run's scenario cannot be read"};
   }
@@ -33,7 +36,10 @@ Result<OpenedWorld> open_world_of(const ReportRun& run, const std::atomic<bool>*
   if (world_must_be_made(*scenario)) {
     return Error{ErrorCode::kNotFound, "the built-in world is not on this machine"};
   }
-  return open_scenario_world(*scenario, [&](double) { return !is_cancelled(cancel); });
+  Result<OpenedWorld> opened =
+      open_scenario_world(*scenario, [&](double) { return !is_cancelled(options.cancel); });
+  if (!opened) return opened.error();
+  return std::make_shared<const OpenedWorld>(std::move(*opened));
 }
 
 Result<std::string> picture_uri(const OpenedWorld& opened,
@@ -55,23 +61,25 @@ Result<MapPicture> map_picture(const ReportRun& run,
                                const GroundExtent& extent,
                                int width_px,
                                int height_px,
-                               const std::atomic<bool>* cancel) {
+                               const MapOptions& options) {
   MapPicture map;
   const auto without = [&](const Error& error) -> Result<MapPicture> {
-    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "the report was cancelled"};
+    if (is_cancelled(options.cancel))
+      return Error{ErrorCode::kCancelled, "the report was cancelled"};
     map.note = "Without a picture of the ground: " + error.message + ".";
     return map;
   };
   if (!is_on_earth(extent)) {
     return without({ErrorCode::kInvalidArgument, "the tracks span more than the earth"});
   }
-  const Result<OpenedWorld> opened = open_world_of(run, cancel);
+  const auto opened = open_world_of(run, options);
   if (!opened) return without(opened.error());
-  Result<std::string> uri = picture_uri(*opened, extent, width_px, height_px, cancel);
+  const OpenedWorld& world = **opened;
+  Result<std::string> uri = picture_uri(world, extent, width_px, height_px, options.cancel);
   if (!uri) return without(uri.error());
   map.data_uri = std::move(*uri);
-  map.attribution = opened->world.tiles->attribution();
-  const std::string change = world_change(run.folder, *opened);
+  map.attribution = world.world.tiles->attribution();
+  const std::string change = world_change(run.folder, world);
   if (!change.empty()) map.note = change + ".";
   return map;
 }

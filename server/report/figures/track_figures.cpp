@@ -115,7 +115,7 @@ Result<std::string> map_figure(const ReportContent& content,
                                const ReportRun& run,
                                const std::vector<ReportEntry>& entries,
                                const std::string& id,
-                               const std::atomic<bool>* cancel) {
+                               const MapOptions& options) {
   LinePlot map;
   map.id = id + "-map";
   map.title = "Map of the tracks";
@@ -140,7 +140,7 @@ Result<std::string> map_figure(const ReportContent& content,
                   {extent.x.low, extent.x.high, extent.y.low, extent.y.high},
                   kPictureWidthPx,
                   std::max(1, static_cast<int>(std::lround(kPictureWidthPx * aspect))),
-                  cancel);
+                  options);
   if (!ground) return ground.error();
   map.background_uri = ground->data_uri;
   std::string caption = "Truth and estimates, the latter aligned by " +
@@ -188,8 +188,8 @@ Result<std::string> track_figures(const ReportContent& content,
                                   const ReportRun& run,
                                   const std::vector<ReportEntry>& entries,
                                   const std::string& id,
-                                  const std::atomic<bool>* cancel) {
-  Result<std::string> map = map_figure(content, run, entries, id, cancel);
+                                  const MapOptions& options) {
+  Result<std::string> map = map_figure(content, run, entries, id, options);
   if (!map) return map.error();
   return *map + "<div class=\"pair\">\n" + side_view(run, entries, kEast, id) +
          side_view(run, entries, kNorth, id) + "</div>\n";

@@ -24,8 +24,7 @@ std::string map_with(const Eigen::Vector3d& offset_m) {
   for (ReportAnswer& answer : content.runs[0].estimates[0].answers) {
     answer.T_world_body->translation += offset_m;
   }
-  const auto figures =
-      track_figures(content, content.runs[0], entries_of(content, {0}), "f", nullptr);
+  const auto figures = track_figures(content, content.runs[0], entries_of(content, {0}), "f", {});
   EXPECT_TRUE(figures.ok());
   // Without the side views, which follow.
   return figures.ok() ? figures->substr(0, figures->find("class=\"pair\"")) : "";

@@ -116,10 +116,10 @@ std::vector<Image> synthetic_crops(std::uint32_t seed) {
   options.reach_m = 100.0F;
   const synthesis::Landscape land = synthesis::Landscape::plan(options);
   std::vector<Image> crops;
-  constexpr int kSide = 8;
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const int step = static_cast<int>(2.0F * options.half_m / kTexelM) / (kSide + 1);
+  constexpr int kSamples = 8;
+  for (int j = 0; j < kSamples; ++j) {
+    for (int i = 0; i < kSamples; ++i) {
+      const int step = static_cast<int>(2.0F * options.half_m / kTexelM) / (kSamples + 1);
       crops.push_back(synthesis::paint_block(
           land, static_cast<float>(kTexelM), (i + 1) * step, (j + 1) * step, kCropPx, kCropPx));
     }

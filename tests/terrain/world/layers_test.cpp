@@ -10,6 +10,7 @@
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
+#include "tests/terrain/cache/built_world.hpp"
 #include "tests/terrain/layered_world.hpp"
 #include "tests/terrain/raster_file.hpp"
 
@@ -19,12 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::RasterFile;
 using testing::TemporaryFolder;
-
-World opened(const WorldSpec& spec) {
-  auto world = open_world(spec);
-  if (!world) throw std::runtime_error(world.error().message);
-  return std::move(*world);
-}
 
 World over(const std::vector<fs::path>& imagery) {
   WorldSpec spec;

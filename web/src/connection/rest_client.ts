@@ -202,6 +202,12 @@ export class RestClient {
     return (await this.call('GET', place, undefined, {}, signal)) as Differences;
   }
 
+  /** The report of runs that are over, as one HTML page. */
+  async report(runs: readonly string[], alignment: string): Promise<Blob> {
+    const query = new URLSearchParams({ runs: runs.join(','), alignment });
+    return (await this.answer(`/report?${query.toString()}`, { method: 'GET' })).blob();
+  }
+
   async deleteRun(id: string): Promise<void> {
     await this.call('DELETE', `/runs/${encodeURIComponent(id)}`);
   }
@@ -336,6 +342,11 @@ export class RestClient {
   }
 
   private async request(path: string, init: RequestInit): Promise<unknown> {
+    const response = await this.answer(path, init);
+    return response.status === 204 ? null : response.json();
+  }
+
+  private async answer(path: string, init: RequestInit): Promise<Response> {
     let response: Response;
     try {
       response = await this.fetch(`${this.base}${path}`, init);
@@ -344,7 +355,7 @@ export class RestClient {
     }
     if (response.status === kUnauthorized) this.onLocked();
     if (!response.ok) throw await errorOf(response);
-    return response.status === 204 ? null : response.json();
+    return response;
   }
 }
 

@@ -6,6 +6,7 @@ import { kReadyLayouts } from '../store/layouts/ready_layouts';
 import { kSceneParts } from '../store/scene/scene_look';
 import { kThemes, kThemeTitles } from '../store/themes';
 import { kShortcuts } from './shortcuts';
+import { saveReport } from './runs/report_button';
 import type { Context } from './view';
 
 const kMostRuns = 500;
@@ -18,6 +19,7 @@ export function commandsOf(context: Context): Command[] {
     ...themeCommands(context),
     ...shortcutCommands(context),
     ...pageCommands(context),
+    ...reportCommands(context),
     ...studyCommands(context),
     ...runCommands(context),
   ];
@@ -150,6 +152,19 @@ function pageCommands({
       group,
       title: 'Edit the scenario as JSON',
       run: () => void catalogue.openEditor(),
+    },
+  ];
+}
+
+function reportCommands(context: Context): Command[] {
+  if (context.reports.runs().length === 0) return [];
+  return [
+    {
+      id: 'report',
+      group: 'Run',
+      title: 'Save a report of the shown runs',
+      words: 'export html file figures tables pdf',
+      run: () => void saveReport(context),
     },
   ];
 }

@@ -5,6 +5,7 @@ import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
 import { LayoutMenu } from './frame/layout_menu';
+import { ReportButton } from './runs/report_button';
 import { ThemeMenu } from './theme_menu';
 import type { Context, View } from './view';
 
@@ -28,11 +29,13 @@ export class HeaderBar implements View {
     class: 'chip connection',
     'data-role': 'connection',
   });
+  private readonly report: ReportButton;
   private readonly layouts: LayoutMenu;
   private readonly themes: ThemeMenu;
   private countdown = 0;
 
   constructor(private readonly context: Context) {
+    this.report = new ReportButton(context);
     this.layouts = new LayoutMenu(context);
     this.themes = new ThemeMenu(context);
     this.connection.addEventListener('click', () => {
@@ -74,6 +77,7 @@ export class HeaderBar implements View {
       this.status,
       this.flag,
       this.changed,
+      this.report.root,
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
@@ -88,6 +92,7 @@ export class HeaderBar implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
+    this.report.update(changed);
     this.layouts.update(changed);
     this.themes.update(changed);
     if (changed.has('run') || changed.has('metrics')) this.updateRun(state);

@@ -14,6 +14,7 @@ import type { Layouts } from '../store/layouts/layouts';
 import type { MissionDesk } from '../store/missions/mission_desk';
 import type { StudyDesk } from '../store/studies/study_desk';
 import type { SweepDesk } from '../store/sweeps/sweep_desk';
+import type { ReportMaker } from '../store/runs/report_maker';
 import type { RestClient } from '../connection/rest_client';
 import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
@@ -52,6 +53,7 @@ export interface Context {
   missions: MissionDesk;
   sweeps: SweepDesk;
   studies: StudyDesk;
+  reports: ReportMaker;
   rest: RestClient;
   notices: Notices;
   client: StreamClient;

@@ -362,6 +362,10 @@ TEST_F(RestApiTest, AnswersEveryRouteAsDocumented) {
   check("GET", differences, differences + "?runs=" + id + "," + id, 200);
   check("GET", differences, differences + "?runs=" + id, 400);
   check("GET", differences, differences + "?runs=none," + id, 404);
+  const std::string reported = "/api/v1/report";
+  check("GET", reported, reported + "?runs=" + id, 200);
+  check("GET", reported, reported + "?runs=" + id + "&alignment=sim4", 400);
+  check("GET", reported, reported + "?runs=none", 404);
   check("GET", one + "/manifest", run + "/manifest", 200);
   EXPECT_EQ(check("GET", one + "/scenario", run + "/scenario", 200).json().at("name"), "tiny");
   const json statuses =

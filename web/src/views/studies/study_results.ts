@@ -29,7 +29,7 @@ export function resultParts(context: Context, shown: StudyShown): HTMLElement[] 
   if (result === null) return [];
   switch (study.kind) {
     case 'explain':
-      return explanationParts(context, result as Explanation);
+      return explanationParts(context, study.name, result as Explanation);
     case 'predict':
       return predictionParts(context, study.name, result as Prediction);
     case 'hunt':
@@ -39,7 +39,7 @@ export function resultParts(context: Context, shown: StudyShown): HTMLElement[] 
 
 // ---- explanation -------------------------------------------------------------------------------
 
-function explanationParts(context: Context, explanation: Explanation): HTMLElement[] {
+function explanationParts(context: Context, name: string, explanation: Explanation): HTMLElement[] {
   const rows = causeRows(explanation);
   const causes = rows.map(({ words, necessary, sufficient, margin }) =>
     h(
@@ -85,10 +85,17 @@ function explanationParts(context: Context, explanation: Explanation): HTMLEleme
       ],
       explanation.flights.map((flight) => reflightRow(context, explanation, flight)),
     ),
+    h('section', {}, h('h4', {}, 'Time line of the flights', pageLink(context, name))),
     ...(untried.length === 0
       ? []
       : [h('section', {}, h('h4', {}, 'Not tried'), h('ul', { class: 'study-list' }, ...untried))]),
   ];
+}
+
+/** What the command writes, as a page of its own: to print, to keep, to send. */
+function pageLink(context: Context, name: string): HTMLElement {
+  const address = context.studies.pageAddress(name);
+  return h('a', { href: address, target: '_blank', rel: 'noopener' }, 'Open as a page');
 }
 
 function verdictCell(verdict: 'yes' | 'no' | ''): HTMLElement {
@@ -184,12 +191,7 @@ function predictionParts(context: Context, name: string, prediction: Prediction)
     h(
       'section',
       { class: 'study-report' },
-      h(
-        'h4',
-        {},
-        'Time line, map and features',
-        h('a', { href: address, target: '_blank', rel: 'noopener' }, 'Open as a page'),
-      ),
+      h('h4', {}, 'Time line, map and features', pageLink(context, name)),
       // Without scripts, forms and an origin of its own; the server's answer says so too.
       h('iframe', {
         src: `${address}#time-line`,

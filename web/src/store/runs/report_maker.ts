@@ -1,0 +1,76 @@
+// Lets the server write the report of the runs that are shown together.
+import type { Run } from '../../protocol/rest_types';
+import { isActive } from '../../protocol/rest_types';
+import type { Notices } from '../notices';
+import type { Store } from '../state';
+
+export const kMostReportRuns = 16;
+
+export interface ReportRest {
+  report: (runs: readonly string[], alignment: string) => Promise<Blob>;
+}
+
+export interface Report {
+  fileName: string;
+  page: Blob;
+}
+
+export class ReportMaker {
+  private making = false;
+
+  constructor(
+    private readonly store: Store,
+    private readonly rest: ReportRest,
+    private readonly notices: Notices,
+  ) {}
+
+  get busy(): boolean {
+    return this.making;
+  }
+
+  /** Ids of the shown runs that are over. */
+  runs(): string[] {
+    const over = ({ run }: { run: Run | null }) => run !== null && !isActive(run);
+    return this.store.state.watched.filter(over).map(({ id }) => id);
+  }
+
+  /** With the alignment that is chosen. Says why there is none. */
+  async make(): Promise<Report | null> {
+    const runs = this.runs();
+    const reason = this.refusal(runs);
+    if (reason !== null) {
+      this.notices.error(reason);
+      return null;
+    }
+    this.set(true);
+    try {
+      const page = await this.rest.report(runs, this.store.state.alignment);
+      return { fileName: reportName(runs), page };
+    } catch (error) {
+      const text = error instanceof Error ? error.message : String(error);
+      this.notices.error(`The report cannot be made: ${text}`);
+      return null;
+    } finally {
+      this.set(false);
+    }
+  }
+
+  private refusal(runs: readonly string[]): string | null {
+    if (this.making) return 'A report is being made already.';
+    if (runs.length === 0) return 'No run is shown that is over: only those can be reported.';
+    if (runs.length > kMostReportRuns) {
+      return `${runs.length} runs are shown: a report takes ${kMostReportRuns} at most.`;
+    }
+    return null;
+  }
+
+  private set(making: boolean): void {
+    this.making = making;
+    this.store.change('run');
+  }
+}
+
+function reportName(runs: readonly string[]): string {
+  const part = runs.length === 1 ? (runs[0] ?? '') : `${runs.length}-runs`;
+  return `overfly-report-${part.replace(/[^\w.-]/g, '-')}.html`;
+}
