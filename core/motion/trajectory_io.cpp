@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/motion/pose_columns.hpp"
 #include "core/motion/time_order.hpp"
 #include "core/text/text_fields.hpp"
 #include "core/time.hpp"
@@ -30,18 +31,6 @@ Result<std::vector<double>> numbers(const FieldFile& file,
     values[i] = *value;
   }
   return values;
-}
-
-/// Checks that a quaternion has unit norm within the rounding of printed decimals.
-Result<Eigen::Quaterniond> rotation_from(const FieldFile& file,
-                                         const FieldLine& line,
-                                         const Eigen::Quaterniond& q) {
-  constexpr double kNormTolerance = 0.01;  // three printed decimals stay within 0.001
-  if (std::abs(q.norm() - 1.0) > kNormTolerance) {
-    return file.bad_line(
-        line, "the quaternion's norm is " + std::to_string(q.norm()) + ": must be 1 within 0.01");
-  }
-  return q;
 }
 
 /// One line of a file: a pose, or a time at which the pose is unknown.
@@ -82,7 +71,7 @@ Result<StampedPose> tum_pose(const FieldFile& file, const FieldLine& line) {
   const Result<std::vector<double>> v = numbers(file, line, 2, 7);
   if (!v) return v.error();
   const auto& n = *v;
-  const auto q = rotation_from(file, line, Eigen::Quaterniond(n[6], n[3], n[4], n[5]));
+  const auto q = unit_quaternion(file, line, Eigen::Quaterniond(n[6], n[3], n[4], n[5]));
   if (!q) return q.error();
   return StampedPose{*t_ns, {*q, {n[0], n[1], n[2]}}};
 }
@@ -105,7 +94,7 @@ Result<StampedPose> euroc_pose(const FieldFile& file, const FieldLine& line) {
   const Result<std::vector<double>> v = numbers(file, line, 2, 7);
   if (!v) return v.error();
   const auto& n = *v;
-  const auto q = rotation_from(file, line, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
+  const auto q = unit_quaternion(file, line, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
   if (!q) return q.error();
   return StampedPose{*t_ns, {*q, {n[0], n[1], n[2]}}};
 }
@@ -174,6 +163,26 @@ Status read_kitti(const fs::path& path,
   return take_rows(file, name, rows, result);
 }
 
+/// A file with named columns: the line of names is the first one.
+Status read_csv(const fs::path& path, const FieldFile& file, TrajectoryFile* result) {
+  const Result<PoseColumns> columns = PoseColumns::named_by(file, file.lines().front());
+  if (!columns) return columns.error();
+  std::vector<Row> rows;
+  for (std::size_t i = 1; i < file.lines().size(); ++i) {
+    const FieldLine& line = file.lines()[i];
+    const Result<std::int64_t> t_ns = columns->time_of(file, line);
+    if (!t_ns) return t_ns.error();
+    if (columns->is_gap(line)) {
+      rows.push_back({&line, {*t_ns, {}}, false});
+      continue;
+    }
+    const Result<Pose> pose = columns->pose_of(file, line);
+    if (!pose) return pose.error();
+    rows.push_back({&line, {*t_ns, *pose}});
+  }
+  return take_rows(file, path.string(), rows, result);
+}
+
 Status read_rows(const fs::path& path, const FieldFile& file, TrajectoryFile* result) {
   std::vector<Row> rows;
   for (const FieldLine& line : file.lines()) {
@@ -191,11 +200,51 @@ Status read_rows(const fs::path& path, const FieldFile& file, TrajectoryFile* re
   return take_rows(file, path.string(), rows, result);
 }
 
-/// Detects the format from the first line: commas mean EuRoC, 12 columns KITTI, all else TUM.
-TrajectoryFormat format_of(const FieldFile& file, bool comma_separated) {
-  if (comma_separated) return TrajectoryFormat::kEuroc;
-  return file.lines().front().fields.size() == 12 ? TrajectoryFormat::kKitti
-                                                  : TrajectoryFormat::kTum;
+/// Detects the format from the first line: names between commas mean CSV, numbers between commas
+/// EuRoC, 12 columns KITTI, all else TUM.
+TrajectoryFormat format_of(const FieldLine& first) {
+  if (first.comma_separated) {
+    return is_line_of_names(first) ? TrajectoryFormat::kCsv : TrajectoryFormat::kEuroc;
+  }
+  return first.fields.size() == 12 ? TrajectoryFormat::kKitti : TrajectoryFormat::kTum;
+}
+
+Status read_poses(const fs::path& path,
+                  const FieldFile& file,
+                  const FieldFile::Limits& limits,
+                  TrajectoryFile* result) {
+  switch (result->format) {
+    case TrajectoryFormat::kKitti:
+      return read_kitti(path, file, limits, result);
+    case TrajectoryFormat::kCsv:
+      return read_csv(path, file, result);
+    case TrajectoryFormat::kTum:
+    case TrajectoryFormat::kEuroc:
+      break;
+  }
+  return read_rows(path, file, result);
+}
+
+/// Whether the first lines of a file are of this format. Errors: kUnreadable.
+Status check_first_pose(const FieldFile& start, TrajectoryFormat format) {
+  const FieldLine& first = start.lines().front();
+  const auto status_of = [](const auto& result) { return result ? Status{} : result.error(); };
+  switch (format) {
+    case TrajectoryFormat::kKitti:
+      return status_of(kitti_pose(start, first));
+    case TrajectoryFormat::kCsv: {
+      const Result<PoseColumns> columns = PoseColumns::named_by(start, first);
+      if (!columns || start.lines().size() < 2) return status_of(columns);
+      const FieldLine& second = start.lines()[1];
+      if (Status status = status_of(columns->time_of(start, second)); !status) return status;
+      return columns->is_gap(second) ? Status{} : status_of(columns->pose_of(start, second));
+    }
+    case TrajectoryFormat::kTum:
+      return is_unknown(first) ? Status{} : status_of(tum_pose(start, first));
+    case TrajectoryFormat::kEuroc:
+      return status_of(euroc_pose(start, first));
+  }
+  return {};
 }
 
 Result<TrajectoryFile> read_with(const fs::path& path,
@@ -208,13 +257,12 @@ Result<TrajectoryFile> read_with(const fs::path& path,
   }
   TrajectoryFile result;
   result.comments = file->comments();
-  result.format = format_of(*file, file->lines().front().comma_separated);
-  const Status rows = result.format == TrajectoryFormat::kKitti
-                          ? read_kitti(path, *file, limits, &result)
-                          : read_rows(path, *file, &result);
+  result.format = format_of(file->lines().front());
+  const Status rows = read_poses(path, *file, limits, &result);
   if (!rows) return rows.error();
   if (result.trajectory.empty()) {
-    return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses, only `nan`"};
+    const char* rest = result.unknown_poses > 0 ? ", only gaps" : "";
+    return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses" + rest};
   }
   return result;
 }
@@ -229,6 +277,8 @@ const char* to_string(TrajectoryFormat format) {
       return "kitti";
     case TrajectoryFormat::kEuroc:
       return "euroc";
+    case TrajectoryFormat::kCsv:
+      return "csv";
   }
   return "";
 }
@@ -251,16 +301,8 @@ Result<TrajectoryFormat> detect_trajectory(const fs::path& path) {
     return Error{ErrorCode::kUnreadable, path.string() + ": contains no poses"};
   }
   const FieldLine& first = start->lines().front();
-  const TrajectoryFormat format = format_of(*start, first.comma_separated);
-  if (format == TrajectoryFormat::kKitti) {
-    const Result<Pose> pose = kitti_pose(*start, first);
-    if (!pose) return pose.error();
-    return format;
-  }
-  if (format == TrajectoryFormat::kTum && is_unknown(first)) return format;
-  const Result<StampedPose> pose =
-      format == TrajectoryFormat::kTum ? tum_pose(*start, first) : euroc_pose(*start, first);
-  if (!pose) return pose.error();
+  const TrajectoryFormat format = format_of(first);
+  if (Status status = check_first_pose(*start, format); !status) return status.error();
   return format;
 }
 

@@ -1,4 +1,4 @@
-// Reads TUM, KITTI and EuRoC ASL trajectory files and writes TUM files.
+// Reads TUM, KITTI, EuRoC ASL and CSV trajectory files and writes TUM files.
 #pragma once
 
 #include <atomic>
@@ -14,8 +14,8 @@
 
 namespace overfly {
 
-enum class TrajectoryFormat { kTum, kKitti, kEuroc };
-[[nodiscard]] const char* to_string(TrajectoryFormat format);  ///< "tum", "kitti", "euroc"
+enum class TrajectoryFormat { kTum, kKitti, kEuroc, kCsv };
+[[nodiscard]] const char* to_string(TrajectoryFormat format);  ///< "tum", "kitti", "euroc", "csv"
 
 /// The content of a trajectory file.
 struct TrajectoryFile {
@@ -23,7 +23,7 @@ struct TrajectoryFile {
   TrajectoryFormat format = TrajectoryFormat::kTum;
   /// False for KITTI poses without a times file; each stamp is then the line number in seconds.
   bool has_times = true;
-  std::size_t unknown_poses = 0;  ///< rows of a TUM file whose pose is `nan`: gaps
+  std::size_t unknown_poses = 0;  ///< rows of a TUM or CSV file without a pose: gaps
   /// `# key value` comments of a TUM file, e.g. init_scene_depth.
   std::map<std::string, std::string> comments;
   /// Poses that were dropped or moved, see order_by_time. Empty if none.
@@ -38,6 +38,7 @@ struct TrajectoryFile {
 /// KITTI: 12 numbers, row-major 3 x 4; times from `times.txt` in the same folder if it exists and
 /// has as many lines.
 /// EuRoC: csv `t[ns], p_xyz, q_wxyz, ...`.
+/// CSV: a line of names first, as PoseColumns.
 /// Poses are sorted by time, and of several with the same time the first is kept; `warnings`
 /// reports how many were moved or dropped.
 /// @param cancel  stops reading; may be null

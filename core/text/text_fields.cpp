@@ -1,6 +1,7 @@
 #include "core/text/text_fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -76,9 +77,21 @@ std::optional<Decimal> decimal_from(std::string_view text) {
   return decimal;
 }
 
-/// The decimal times 10^9, rounded half away from zero; empty on overflow.
-std::optional<std::int64_t> ns_from_decimal(Decimal decimal) {
-  decimal.exponent += 9;
+struct UnitEntry {
+  TimeUnit unit;
+  int exponent;  ///< of ten, in nanoseconds
+  const char* name;
+  const char* limit;
+};
+constexpr std::array<UnitEntry, 4> kUnits{
+    {{TimeUnit::kSeconds, 9, "seconds", "9.2e9 s"},
+     {TimeUnit::kMilliseconds, 6, "milliseconds", "9.2e12 ms"},
+     {TimeUnit::kMicroseconds, 3, "microseconds", "9.2e15 us"},
+     {TimeUnit::kNanoseconds, 0, "nanoseconds", "9.2e18 ns"}}};
+
+/// The decimal times a power of ten, rounded half away from zero; empty on overflow.
+std::optional<std::int64_t> ns_from_decimal(Decimal decimal, int exponent) {
+  decimal.exponent += exponent;
   const std::size_t nonzero =
       std::min(decimal.digits.find_first_not_of('0'), decimal.digits.size());
   decimal.digits.erase(0, nonzero);
@@ -215,10 +228,17 @@ Result<double> FieldFile::number(const FieldLine& line, std::size_t column) cons
 }
 
 Result<std::int64_t> FieldFile::time_s(const FieldLine& line, std::size_t column) const {
+  return time(line, column, TimeUnit::kSeconds);
+}
+
+Result<std::int64_t> FieldFile::time(const FieldLine& line,
+                                     std::size_t column,
+                                     TimeUnit unit) const {
+  const UnitEntry& entry = kUnits.at(static_cast<std::size_t>(unit));
   const std::optional<Decimal> decimal = decimal_from(line.fields.at(column - 1));
-  if (!decimal) return bad_field(line, column, "must be a time in seconds");
-  const std::optional<std::int64_t> t_ns = ns_from_decimal(*decimal);
-  if (!t_ns) return bad_field(line, column, "magnitude must be below 9.2e9 s");
+  if (!decimal) return bad_field(line, column, std::string("must be a time in ") + entry.name);
+  const std::optional<std::int64_t> t_ns = ns_from_decimal(*decimal, entry.exponent);
+  if (!t_ns) return bad_field(line, column, std::string("magnitude must be below ") + entry.limit);
   return *t_ns;
 }
 

@@ -24,6 +24,8 @@ struct FieldLine {
   std::vector<std::string_view> fields;
 };
 
+enum class TimeUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
+
 class FieldFile {
  public:
   static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
@@ -66,6 +68,10 @@ class FieldFile {
   /// Seconds as a decimal, exact to the nanosecond for any size (a double holding today's seconds
   /// since 1970 resolves only 240 ns). Errors: kUnreadable.
   [[nodiscard]] Result<std::int64_t> time_s(const FieldLine& line, std::size_t column) const;
+  /// The same in any unit.
+  [[nodiscard]] Result<std::int64_t> time(const FieldLine& line,
+                                          std::size_t column,
+                                          TimeUnit unit) const;
   /// Whole nanoseconds. Errors: kUnreadable.
   [[nodiscard]] Result<std::int64_t> time_ns(const FieldLine& line, std::size_t column) const;
 

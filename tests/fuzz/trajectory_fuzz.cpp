@@ -1,4 +1,4 @@
-// Trajectory files (TUM, KITTI, EuRoC) and logs of flights (poses, geodetic CSV).
+// Trajectory files (TUM, KITTI, EuRoC, CSV) and logs of flights (poses, geodetic CSV).
 //
 // The input is a folder: `poses.txt`, and for KITTI `times.txt`.
 #include "core/motion/trajectory_io.hpp"

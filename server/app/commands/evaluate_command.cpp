@@ -181,7 +181,7 @@ int evaluate(EvaluateArguments arguments) {
 void add_evaluate_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand("evaluate", "Score trajectories against the truth");
-  command->add_option("--truth", arguments->truth, "Trajectory file: TUM, KITTI or EuRoC");
+  command->add_option("--truth", arguments->truth, "Trajectory file: TUM, KITTI, EuRoC or CSV");
   command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
   command
       ->add_option(
