@@ -259,7 +259,8 @@ void add_output_options(CLI::App& command, TrackArguments& arguments) {
   command.add_option("--statuses", arguments.statuses, "File for one line of JSON per frame");
   command.add_option("--points", arguments.points, "File for the sparse map (PLY)");
   command.add_option("--debug", arguments.debug, "Folder for the debug image of each frame");
-  command.add_option("--truth", arguments.truth, "Trajectory to score against: TUM, KITTI, EuRoC, CSV")
+  command
+      .add_option("--truth", arguments.truth, "Trajectory to score against: TUM, KITTI, EuRoC, CSV")
       ->check(CLI::ExistingFile);
   command
       .add_option("--init-true-depth-m",
