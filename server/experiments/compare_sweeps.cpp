@@ -31,10 +31,10 @@ ResultsByFlight results_by_flight(const SweepResults& results,
   return by_flight;
 }
 
-Status add_values(const fs::path& sweep,
-                  const SweepResult& result,
-                  evaluation::AlignmentMode mode,
-                  FlightValues& values) {
+/// What conditions may ask of one flight, as far as it has it: errors only of a success.
+Result<std::map<std::string, double>> values_of(const fs::path& sweep,
+                                                const SweepResult& result,
+                                                evaluation::AlignmentMode mode) {
   const Result<RunMetrics> metrics = read_run_metrics(sweep / result.run);
   if (!metrics) return metrics.error();
   const auto estimator = metrics->estimators.find(result.estimator);
@@ -44,16 +44,32 @@ Status add_values(const fs::path& sweep,
   }
   const evaluation::Score& score = estimator->second.score;
   const bool success = result.outcome == evaluation::Outcome::kCompleted;
-  values["success_rate"].push_back(success ? 1.0 : 0.0);
-  values["coverage"].push_back(score.coverage);
-  values["reset_count"].push_back(score.reset_count);
-  if (score.initialised_at_s) values["initialised_at_s"].push_back(*score.initialised_at_s);
+  std::map<std::string, double> values{{"success_rate", success ? 1.0 : 0.0},
+                                       {"coverage", score.coverage},
+                                       {"reset_count", score.reset_count}};
+  if (score.initialised_at_s) values["initialised_at_s"] = *score.initialised_at_s;
   const auto alignment = score.alignments.find(mode);
-  if (!success || alignment == score.alignments.end()) return {};
-  values["position_rmse_m"].push_back(alignment->second.position_m.rmse);
-  values["position_rmse_hold_m"].push_back(alignment->second.position_rmse_hold_m);
+  if (!success || alignment == score.alignments.end()) return values;
+  values["position_rmse_m"] = alignment->second.position_m.rmse;
+  values["position_rmse_hold_m"] = alignment->second.position_rmse_hold_m;
   if (alignment->second.rotation_deg) {
-    values["rotation_rmse_deg"].push_back(alignment->second.rotation_deg->rmse);
+    values["rotation_rmse_deg"] = alignment->second.rotation_deg->rmse;
+  }
+  return values;
+}
+
+/// Takes what both flights of a pair have: an estimator that is lost on hard flights must not seem
+/// more accurate for it.
+Status add_pair(const Result<std::map<std::string, double>>& flight,
+                const Result<std::map<std::string, double>>& reference,
+                PairedSweeps& paired) {
+  if (!flight) return flight.error();
+  if (!reference) return reference.error();
+  for (const auto& [name, value] : *flight) {
+    const auto other = reference->find(name);
+    if (other == reference->end()) continue;
+    paired.flights[name].push_back(value);
+    paired.baseline[name].push_back(other->second);
   }
   return {};
 }
@@ -93,12 +109,9 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
     const auto reference = references.find(flight);
     if (reference == references.end()) continue;
     ++paired.pairs;
-    if (Status status = add_values(sweep, *result, mode, paired.flights); !status) {
-      return status.error();
-    }
-    if (Status status = add_values(baseline, *reference->second, mode, paired.baseline); !status) {
-      return status.error();
-    }
+    const Status status = add_pair(
+        values_of(sweep, *result, mode), values_of(baseline, *reference->second, mode), paired);
+    if (!status) return status.error();
   }
   paired.without_pair = flights.size() + references.size() - 2 * paired.pairs;
   if (paired.pairs == 0) {

@@ -21,7 +21,7 @@ struct PairedSweeps {
   std::size_t failed = 0;        ///< flights of either sweep that failed
 };
 
-/// Errors of positions and rotations are those of flights with the outcome COMPLETED; coverage and
+/// Errors of positions and rotations are those of pairs with the outcome COMPLETED in both; coverage and
 /// resets are those of all flights.
 /// @param estimator  only its flights; all if empty
 /// Errors: as SweepResults::read; as read_run_metrics; kNotFound if no flight has a pair.

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <list>
+#include <map>
 #include <memory>
 #include <set>
 #include <thread>
@@ -48,9 +49,12 @@ class SweepFlyer {
         files_(options.folder),
         flown_{std::move(plan), std::move(results), {}, false, {}} {
     flown_.progress.most = flown_.plan.most_flights();
+    std::map<std::string, double> earlier_s;  // a flight's results share its run
     for (const auto& [key, result] : flown_.results.by_key()) {
       if (result.completed()) flown_before_.insert(flight_text(result.cell, result.repeat));
+      earlier_s[result.run] = result.duration_s;
     }
+    for (const auto& [run, duration_s] : earlier_s) flown_.progress.spent_s += duration_s;
   }
 
   Result<FlownSweep> fly() {
@@ -158,6 +162,7 @@ class SweepFlyer {
     const auto flying = std::find_if(
         flying_.begin(), flying_.end(), [&](const Flying& f) { return f.due.key == ended.id; });
     flown_.progress.spent_s += ended.duration_s;
+    own_s_ += ended.duration_s;
     count_pictures_of(ended);
     std::string failure = files_.failure(ended, sweep_.timeout_s);
     RunMetrics metrics;
@@ -219,7 +224,7 @@ class SweepFlyer {
     if (progress.flown > 0) {
       const auto rest =
           static_cast<double>(progress.most - std::min(progress.passed, progress.most));
-      const double each_s = progress.spent_s / static_cast<double>(progress.flown);
+      const double each_s = own_s_ / static_cast<double>(progress.flown);
       progress.left_s = rest * each_s / static_cast<double>(most_at_once_);
     }
     if (options_.progress) options_.progress(progress);
@@ -236,6 +241,7 @@ class SweepFlyer {
   std::set<std::string> flown_before_;  ///< cells and repeats with results of an earlier call
   std::list<Flying> flying_;
   std::optional<DueFlight> waiting_;  ///< for memory
+  double own_s_ = 0.0;                ///< of the flights of this call
   std::size_t most_at_once_ = 1;      ///< flights that flew at the same time so far
 };
 

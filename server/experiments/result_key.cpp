@@ -7,6 +7,7 @@
 #include "core/measure/sha256.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
+#include "server/experiments/program_files.hpp"
 #include "server/files/file_stamp.hpp"
 #include "server/files/program_identity.hpp"
 
@@ -79,6 +80,13 @@ std::string flight_key(const Scenario& scenario) {
 std::string result_key(const std::string& flight, const Json& estimator) {
   NamedFiles files{{}, flight + "\n" + estimator.dump()};
   add_named_files(estimator, "/", false, files);
+  const auto command = estimator.find("command");
+  if (command != estimator.end() && command->is_array() && !command->empty() &&
+      command->front().is_string()) {
+    for (const fs::path& file : program_files(command->front().get<std::string>())) {
+      add_file(file, false, files);
+    }
+  }
   return digest_of(files.text);
 }
 

@@ -15,7 +15,9 @@ struct SweepProgress {
   std::size_t flown = 0;   ///< in this call
   std::size_t failed = 0;  ///< in this call
   double left_s = 0.0;     ///< estimate for the rest; 0 before the first flight is over
-  double spent_s = 0.0;    ///< by the flights of this call, one after the other
+  /// By all flights of the sweep so far, one after the other: those of this call with failed
+  /// attempts, those of earlier calls as far as they have a result.
+  double spent_s = 0.0;
 };
 
 /// Errors: kIo.

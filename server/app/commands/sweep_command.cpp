@@ -50,7 +50,7 @@ struct SweepArguments {
 };
 
 /// "1 h 05 min", "12 min", "40 s"
-std::string time_left_text(double seconds) {
+std::string duration_words(double seconds) {
   const auto whole = static_cast<long>(seconds);
   if (whole < 60) return std::to_string(whole) + " s";
   if (whole < 3600) return std::to_string(whole / 60) + " min";
@@ -62,7 +62,8 @@ void show_sweep(ProgressDisplay& display, const experiments::SweepProgress& prog
   std::string text =
       "flight " + std::to_string(progress.passed) + " of " + std::to_string(progress.most);
   if (progress.failed > 0) text += ", " + std::to_string(progress.failed) + " failed";
-  if (progress.left_s > 0.0) text += ", about " + time_left_text(progress.left_s) + " left";
+  if (progress.spent_s > 0.0) text += ", " + duration_words(progress.spent_s) + " flown";
+  if (progress.left_s > 0.0) text += ", about " + duration_words(progress.left_s) + " left";
   display.show(static_cast<double>(progress.passed) / static_cast<double>(progress.most), text);
 }
 

@@ -57,11 +57,17 @@ TEST_F(FlySweep, FliesEachCellOnceAndNeverAgain) {
 TEST_F(FlySweep, ALongerAxisFliesOnlyWhatIsNew) {
   write_program();
   ASSERT_TRUE(fly(sweep(kTwoSpeeds)).ok());
+  const double two_s = progress_.spent_s;
+  EXPECT_GT(two_s, 0.0);
   const auto longer =
       fly(sweep(R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10, 15, 25]}])"));
   ASSERT_TRUE(longer.ok());
   EXPECT_EQ(flights(), 3U);
   EXPECT_EQ(longer->plan.cells().size(), 3U);
+  const double three_s = progress_.spent_s;
+  EXPECT_GT(three_s, two_s) << "earlier calls count";
+  ASSERT_TRUE(fly(sweep(kTwoSpeeds)).ok());
+  EXPECT_DOUBLE_EQ(progress_.spent_s, three_s) << "nothing was flown";
 }
 
 /// All estimators of a flight share its frames; one that is added, or changed, flies without those

@@ -143,8 +143,8 @@ export class SweepHead {
       texts.push(passed < most ? `${passed} of ${most} flights` : `${most} flights`);
       if (sweep.flying) {
         if (progress.left_s > 0) texts.push(`about ${formatDuration(progress.left_s)} left`);
-        texts.push(`${formatDuration(progress.spent_s)} flown by this call`);
       }
+      if (progress.spent_s > 0) texts.push(`${formatDuration(progress.spent_s)} flown`);
     }
     if (sweep.flying && sweep.here === null) texts.push('flown by another process');
     if (table !== null && table.failed > 0) texts.push(`${table.failed} flights failed`);
