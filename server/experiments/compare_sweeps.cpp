@@ -122,6 +122,17 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
   return paired;
 }
 
+Result<std::vector<JudgedCondition>> judged_conditions(const std::vector<std::string>& texts,
+                                                       const PairedSweeps& paired) {
+  std::vector<JudgedCondition> judged;
+  for (const std::string& text : texts) {
+    const Result<Condition> condition = Condition::parse(text);
+    if (!condition) return condition.error();
+    judged.push_back({text, condition->evaluate(paired.flights, paired.baseline)});
+  }
+  return judged;
+}
+
 std::string junit_from(const std::vector<JudgedCondition>& conditions) {
   std::size_t failures = 0;
   std::size_t errors = 0;

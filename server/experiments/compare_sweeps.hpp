@@ -21,8 +21,8 @@ struct PairedSweeps {
   std::size_t failed = 0;        ///< flights of either sweep that failed
 };
 
-/// Errors of positions and rotations are those of pairs with the outcome COMPLETED in both; coverage and
-/// resets are those of all flights.
+/// Errors of positions and rotations are those of pairs with the outcome COMPLETED in both;
+/// coverage and resets are those of all flights.
 /// @param estimator  only its flights; all if empty
 /// Errors: as SweepResults::read; as read_run_metrics; kNotFound if no flight has a pair.
 [[nodiscard]] Result<PairedSweeps> pair_sweeps(const std::filesystem::path& sweep,
@@ -35,6 +35,10 @@ struct JudgedCondition {
   std::string text;
   Result<Condition::Verdict> verdict = Condition::Verdict{};
 };
+
+/// The conditions in their order. Errors: as Condition::parse, for the first that is invalid.
+[[nodiscard]] Result<std::vector<JudgedCondition>> judged_conditions(
+    const std::vector<std::string>& texts, const PairedSweeps& paired);
 
 /// Test results in JUnit's XML: one case for each condition, which fails if the condition holds.
 [[nodiscard]] std::string junit_from(const std::vector<JudgedCondition>& conditions);

@@ -98,6 +98,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_report_routes(&context->router, &runs, drawers);
   const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers};
   add_sweep_routes(&context->router, sweeps);
+  add_sweep_table_routes(&context->router, sweeps);
   add_sweep_start_routes(&context->router, sweeps);
   add_study_routes(&context->router, {&context->studies, readers});
   add_calibration_session_routes(&context->router, &context->calibrations);

@@ -79,19 +79,22 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await page.locator('.study-page [aria-label=Close]').click();
   });
 
-  step('offers to explain a run whose estimator failed, in the list and beside its errors', async () => {
-    await page.locator('.run[data-run=planted] [data-role=explain]').waitFor();
-    await role('explain-estimator').first().waitFor();
-    await dashboard.screenshot('failed_run_1280x800');
-    await role('explain-estimator').first().click();
-    await page.locator('.study-form h3', { hasText: 'Explain why' }).waitFor();
-    assert.equal(await role('study-run').inputValue(), 'planted');
-    assert.equal(await role('study-estimator').inputValue(), 'feature');
-    await role('study-flights').fill('99');
-    await role('start-study').click();
-    await page.locator('[data-role=study-errors]', { hasText: 'must be' }).waitFor();
-    await dashboard.screenshot('explain_form_1280x800');
-  });
+  step(
+    'offers to explain a run whose estimator failed, in the list and beside its errors',
+    async () => {
+      await page.locator('.run[data-run=planted] [data-role=explain]').waitFor();
+      await role('explain-estimator').first().waitFor();
+      await dashboard.screenshot('failed_run_1280x800');
+      await role('explain-estimator').first().click();
+      await page.locator('.study-form h3', { hasText: 'Explain why' }).waitFor();
+      assert.equal(await role('study-run').inputValue(), 'planted');
+      assert.equal(await role('study-estimator').inputValue(), 'feature');
+      await role('study-flights').fill('99');
+      await role('start-study').click();
+      await page.locator('[data-role=study-errors]', { hasText: 'must be' }).waitFor();
+      await dashboard.screenshot('explain_form_1280x800');
+    },
+  );
 
   step('explains it: the planted cause is necessary and sufficient', async () => {
     await role('study-flights').fill('5');
@@ -138,9 +141,11 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('launch_1280x800');
     await dashboard.field('flight.course.airspeed_m_s').fill('28');
     await role('open-predict').click();
-    await page.locator('[data-role=study-scenario] option:checked', { hasText: 'As in Launch' }).waitFor({
-      state: 'attached',
-    });
+    await page
+      .locator('[data-role=study-scenario] option:checked', { hasText: 'As in Launch' })
+      .waitFor({
+        state: 'attached',
+      });
     await role('study-map_km').fill('0.6');
     await dashboard.screenshot('predict_form_1280x800');
     await role('start-study').click();
@@ -159,9 +164,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await page.locator('[data-role=study-axes] tbody tr').nth(1).waitFor();
     await role('axis-1-path').fill('camera.sensor.read_noise_e');
     await role('axis-1-path').press('Tab');
-    await dashboard.until(
-      () => document.querySelector('[data-role=axis-1-to]').value === '60',
-    );
+    await dashboard.until(() => document.querySelector('[data-role=axis-1-to]').value === '60');
     await role('study-flights').fill('3');
     await role('study-all').check();
     await dashboard.screenshot('hunt_form_1280x800');
@@ -209,9 +212,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await page.locator(`[data-study="${studies.hunt}"]`).click();
     await role('study-worst').waitFor();
     await dashboard.screenshot('hunted_390x844');
-    assert.ok(
-      await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth),
-    );
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
     await page.locator(`[data-study="${studies.explain}"]`).click();
     await role('study-causes').waitFor();
     await dashboard.screenshot('explained_390x844');

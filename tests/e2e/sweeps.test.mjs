@@ -1,7 +1,7 @@
 // A sweep that is flown beside the server: its matrix fills, and a cell opens its flight.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
@@ -252,6 +252,67 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await page.locator('.sweep-form button', { hasText: 'Close' }).click();
     await page.locator('[data-sweep=night]').click();
     await matrix('hold').first().waitFor();
+  });
+
+  step('saves its tables, beside published errors', async () => {
+    const save = async (format) => {
+      const saved = page.waitForEvent('download');
+      await page.locator(`.sweep-files [data-format=${format}]`).click();
+      const download = await saved;
+      return {
+        name: download.suggestedFilename(),
+        text: readFileSync(await download.path(), 'utf8'),
+      };
+    };
+    const { name, text } = await save('markdown');
+    assert.equal(name, 'night.md');
+    assert.match(text, /^# Two heights, two airspeeds and a blackout/);
+    assert.doesNotMatch(text, /published/i);
+    await page.locator('[data-role=sweep-published]').selectOption('paper');
+    await page.locator('[data-role=counterparts]').fill('feature=ORB-SLAM2');
+    assert.match(
+      (await save('markdown')).text,
+      /No cell of this sweep is published in: Virtual Testbed/,
+    );
+    assert.match((await save('html')).text, /<table/);
+    assert.equal((await save('latex')).name, 'night.tex');
+    assert.match((await save('csv')).text, /feature/);
+  });
+
+  step('compares it with another sweep, flight by flight', async () => {
+    // The same flights, in one of which the estimator was lost.
+    cpSync(path.join(folder, 'night'), path.join(folder, 'baseline'), { recursive: true });
+    const results = path.join(folder, 'baseline/results.jsonl');
+    const lines = readFileSync(results, 'utf8')
+      .trim()
+      .split('\n')
+      .map((line) => JSON.parse(line));
+    lines.find(
+      ({ estimator, outcome }) => estimator === 'feature' && outcome === 'COMPLETED',
+    ).outcome = 'LOST';
+    writeFileSync(results, lines.map((line) => `${JSON.stringify(line)}\n`).join(''));
+    await page.locator('[data-role=compare-baseline] option[value=baseline]').waitFor({
+      state: 'attached',
+      timeout: 60_000,
+    });
+    await page.locator('[data-role=compare-baseline]').selectOption('baseline');
+    await page.locator('[data-role=compare-estimator]').selectOption('feature');
+    await page
+      .locator('[data-role=compare-conditions]')
+      .fill('success_rate < baseline\nmedian(position_rmse_m) >= baseline\nmedian(nothing) > 1');
+    await page.locator('[data-role=compare-sweeps]').click();
+    const answer = page.locator('[data-role=comparison]');
+    await answer.locator('.bad', { hasText: 'nothing' }).waitFor();
+    await page
+      .locator('[data-role=compare-conditions]')
+      .fill('success_rate < baseline\nmedian(position_rmse_m) >= baseline');
+    await page.locator('[data-role=compare-sweeps]').click();
+    await answer.locator('p', { hasText: '8 flights in both sweeps; 0 without a pair' }).waitFor();
+    const row = answer.locator('[data-quantity=success_rate] td');
+    assert.deepEqual(await row.allInnerTexts(), ['8', '50 %', '38 %']);
+    assert.deepEqual(await answer.locator('li .chip').allInnerTexts(), ['passed', 'failed']);
+    await answer.locator('li').last().scrollIntoViewIfNeeded();
+    await dashboard.screenshot('sweep_comparison_1280x800');
   });
 
   step('opens the flight of a cell', async () => {

@@ -45,16 +45,6 @@ Result<experiments::TableOptions> table_options_from(const TableArguments& argum
   return options;
 }
 
-std::string text_of(const experiments::SweepTables& tables,
-                    const experiments::TableOptions& options,
-                    const std::string& format) {
-  if (format == "csv") return experiments::csv_from(tables);
-  if (format == "json") return experiments::json_from(tables).dump(2) + "\n";
-  const experiments::TableDocument document = experiments::document_from(tables, options);
-  if (format == "latex") return experiments::latex_from(document);
-  return format == "html" ? experiments::html_from(document) : experiments::markdown_from(document);
-}
-
 int table(const TableArguments& arguments) {
   const Result<experiments::TableOptions> options = table_options_from(arguments);
   if (!options) return report(options.error());
@@ -62,7 +52,8 @@ int table(const TableArguments& arguments) {
   if (!scores) return report(scores.error());
   const auto tables = experiments::sweep_tables(std::move(*scores), *options);
   if (!tables) return report(tables.error());
-  const std::string text = text_of(*tables, *options, arguments.format);
+  const std::string text = experiments::text_from(
+      *tables, *options, experiments::table_format_from(arguments.format).value());
   if (arguments.out.empty()) {
     std::cout << text;
     return kExitOk;

@@ -29,13 +29,8 @@ Json file_entry(const fs::path& file) {
           {"error", nullptr}};
 }
 
-}  // namespace
-
-fs::path sweep_files_folder(const fs::path& scenarios_folder) {
-  return fs::absolute(scenarios_folder / "sweeps").lexically_normal();
-}
-
-Json sweep_file_list(const fs::path& folder) {
+/// By name.
+std::vector<fs::path> json_files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code failed;
   for (fs::directory_iterator entry(folder, failed), end;
@@ -47,9 +42,34 @@ Json sweep_file_list(const fs::path& folder) {
     }
   }
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+fs::path sweep_files_folder(const fs::path& scenarios_folder) {
+  return fs::absolute(scenarios_folder / "sweeps").lexically_normal();
+}
+
+Json sweep_file_list(const fs::path& folder) {
   Json list = Json::array();
-  for (const fs::path& file : files) list.push_back(file_entry(file));
+  for (const fs::path& file : json_files_in(folder)) list.push_back(file_entry(file));
   return list;
+}
+
+Json published_file_list(const fs::path& folder) {
+  Json names = Json::array();
+  for (const fs::path& file : json_files_in(folder / "published")) {
+    names.push_back(file.stem().string());
+  }
+  return names;
+}
+
+Result<fs::path> published_file(const fs::path& folder, const std::string& name) {
+  const fs::path file = folder / "published" / (name + ".json");
+  std::error_code ignored;
+  if (is_plain_name(name) && fs::is_regular_file(file, ignored)) return file;
+  return Error{ErrorCode::kNotFound, "published errors \"" + name + "\": no such file"};
 }
 
 Result<Json> sweep_file_document(const fs::path& folder, const std::string& name) {

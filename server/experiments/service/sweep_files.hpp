@@ -22,4 +22,10 @@ namespace overfly::server::experiments {
 [[nodiscard]] Result<nlohmann::json> sweep_file_document(const std::filesystem::path& folder,
                                                          const std::string& name);
 
+/// Names of the files of published errors that tables may show, in `published` in that folder.
+[[nodiscard]] nlohmann::json published_file_list(const std::filesystem::path& folder);
+/// Such a file. Errors: kNotFound, also for a name that is not plain.
+[[nodiscard]] Result<std::filesystem::path> published_file(const std::filesystem::path& folder,
+                                                           const std::string& name);
+
 }  // namespace overfly::server::experiments

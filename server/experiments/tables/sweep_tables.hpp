@@ -40,6 +40,13 @@ struct SweepTables {
 [[nodiscard]] std::string csv_from(const SweepTables& tables);
 [[nodiscard]] nlohmann::json json_from(const SweepTables& tables);
 
+enum class TableFormat { kMarkdown, kLatex, kHtml, kCsv, kJson };
+/// "markdown", "latex", "html", "csv", "json".
+[[nodiscard]] std::optional<TableFormat> table_format_from(const std::string& text);
+[[nodiscard]] std::string text_from(const SweepTables& tables,
+                                    const TableOptions& options,
+                                    TableFormat format);
+
 /// Three significant digits, without an exponent: "0.0123", "1.23", "12.3", "1234".
 [[nodiscard]] std::string error_number(double value);
 

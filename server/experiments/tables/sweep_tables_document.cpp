@@ -358,4 +358,29 @@ TableDocument document_from(const SweepTables& tables, const TableOptions& optio
   return document;
 }
 
+std::optional<TableFormat> table_format_from(const std::string& text) {
+  if (text == "markdown") return TableFormat::kMarkdown;
+  if (text == "latex") return TableFormat::kLatex;
+  if (text == "html") return TableFormat::kHtml;
+  if (text == "csv") return TableFormat::kCsv;
+  if (text == "json") return TableFormat::kJson;
+  return std::nullopt;
+}
+
+std::string text_from(const SweepTables& tables, const TableOptions& options, TableFormat format) {
+  switch (format) {
+    case TableFormat::kMarkdown:
+      return markdown_from(document_from(tables, options));
+    case TableFormat::kLatex:
+      return latex_from(document_from(tables, options));
+    case TableFormat::kHtml:
+      return html_from(document_from(tables, options));
+    case TableFormat::kCsv:
+      return csv_from(tables);
+    case TableFormat::kJson:
+      return json_from(tables).dump(2) + "\n";
+  }
+  return "";
+}
+
 }  // namespace overfly::server::experiments

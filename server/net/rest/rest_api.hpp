@@ -79,6 +79,8 @@ struct SweepRoutes {
 };
 /// sweeps, sweeps/{name}
 void add_sweep_routes(RestRouter* router, const SweepRoutes& routes);
+/// sweeps/{name}/tables, sweeps/{name}/comparison
+void add_sweep_table_routes(RestRouter* router, const SweepRoutes& routes);
 /// sweep-files, sweep-files/{name}, sweep-check; starting, continuing and cancelling sweeps
 void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes);
 /// What the routes of studies need.

@@ -162,6 +162,7 @@ void answer_sweep_request(const SweepRoutes& routes,
 json files_json(const SweepService& sweeps) {
   return {
       {"files", experiments::sweep_file_list(sweeps.files_folder())},
+      {"published", experiments::published_file_list(sweeps.files_folder())},
       {"jobs", {{"default", SweepService::default_jobs()}, {"most", SweepService::most_jobs()}}}};
 }
 

@@ -205,7 +205,7 @@ export class RestClient {
   /** The report of runs that are over, as one HTML page. */
   async report(runs: readonly string[], alignment: string): Promise<Blob> {
     const query = new URLSearchParams({ runs: runs.join(','), alignment });
-    return (await this.answer(`/report?${query.toString()}`, { method: 'GET' })).blob();
+    return this.file(`/report?${query.toString()}`);
   }
 
   async deleteRun(id: string): Promise<void> {
@@ -334,6 +334,11 @@ export class RestClient {
       init.headers = { ...headers, 'Content-Type': 'application/json' };
     }
     return this.request(path, init);
+  }
+
+  /** An answer that is no JSON, to be saved. */
+  async file(path: string): Promise<Blob> {
+    return (await this.answer(path, { method: 'GET' })).blob();
   }
 
   /** With a file as the body. */

@@ -1,7 +1,9 @@
 // The REST calls about sweeps.
 import type { JsonObject } from '../protocol/rest_types';
 import type {
+  ComparisonRequest,
   SweepCheck,
+  SweepComparison,
   SweepEntry,
   SweepFiles,
   SweepStart,
@@ -49,6 +51,19 @@ export class SweepClient {
     changed: { document?: JsonObject; jobs?: number },
   ): Promise<SweepEntry> {
     return (await this.rest.call('POST', `${placeOf(name)}/continue`, changed)) as SweepEntry;
+  }
+
+  /** The tables of a sweep as a file. @param query  as of the route */
+  async tables(name: string, query: Record<string, string>): Promise<Blob> {
+    return this.rest.file(`${placeOf(name)}/tables?${new URLSearchParams(query).toString()}`);
+  }
+
+  async compare(name: string, request: ComparisonRequest): Promise<SweepComparison> {
+    return (await this.rest.call(
+      'POST',
+      `${placeOf(name)}/comparison`,
+      request,
+    )) as SweepComparison;
   }
 
   async cancel(name: string): Promise<SweepEntry> {

@@ -102,6 +102,8 @@ export interface SweepFile {
 
 export interface SweepFiles {
   files: SweepFile[];
+  /** Names of files of published errors. */
+  published: string[];
   /** Flights at the same time. */
   jobs: { default: number; most: number };
 }
@@ -117,6 +119,35 @@ export interface SweepCheck {
   flights: number;
   /** Mean of one flight by the clock on the wall; null = not known. */
   flight_s: number | null;
+}
+
+/** A sweep beside another one, flight by flight. */
+export interface SweepComparison {
+  pairs: number;
+  without_pair: number;
+  failed: number;
+  quantities: {
+    quantity: string;
+    /** For which both sweeps have a value. */
+    flights: number;
+    sweep: number | null;
+    baseline: number | null;
+  }[];
+  conditions: {
+    text: string;
+    /** true: a failure; null: it cannot be computed, and `problem` says why. */
+    holds: boolean | null;
+    left: number | null;
+    right: number | null;
+    problem: string | null;
+  }[];
+}
+
+export interface ComparisonRequest {
+  baseline: string;
+  /** Empty: all. */
+  estimator: string;
+  conditions: string[];
 }
 
 export interface SweepStart {

@@ -51,6 +51,15 @@ void RestApiTest::check_sweeps() {
   const json table = check("GET", one, all + "/night", 200).json().at("table");
   ASSERT_EQ(table.at("rows").size(), 1U) << table;
   EXPECT_EQ(table.at("rows").at(0).at("runs"), json::array({"night." + run}));
+  const std::string tables = all + "/night/tables";
+  check("GET", one + "/tables", tables, 200);
+  check("GET", one + "/tables", tables + "?format=pdf", 400);
+  check("GET", one + "/tables", tables + "?published=none", 404);
+  const std::string comparison = all + "/night/comparison";
+  check("POST", one + "/comparison", comparison, 200, R"({"baseline": "night"})", kJson);
+  check("POST", one + "/comparison", comparison, 400, "{}", kJson);
+  check("POST", one + "/comparison", comparison, 404, R"({"baseline": "none"})", kJson);
+  check("POST", one + "/comparison", comparison, 415, "{}");
   const std::string shown = "/api/v1/runs/night." + run;
   EXPECT_EQ(check("GET", "/api/v1/runs/{id}", shown, 200).json().at("id"), "night." + run);
   check("DELETE", "/api/v1/runs/{id}", shown, 409);

@@ -6,6 +6,7 @@ import type { Notices } from '../notices';
 import type { Session } from '../session';
 import type { Store } from '../state';
 import { SweepForm } from './sweep_form';
+import { initialSweepResults, SweepResults } from './sweep_results';
 import type { SweepFigure } from './sweep_matrix';
 import type { SweepPage } from './sweep_page';
 
@@ -14,6 +15,7 @@ const kPollIdle_ms = 15000;
 
 export class SweepDesk {
   readonly form: SweepForm;
+  readonly results: SweepResults;
   /** Of the last opening: an older chain of polls ends. */
   private opening = 0;
   /** Sweeps that this viewer cancelled. */
@@ -26,6 +28,7 @@ export class SweepDesk {
     private readonly notices: Notices,
     private readonly later: (callback: () => void, delay_ms: number) => void,
   ) {
+    this.results = new SweepResults(store, client, notices);
     this.form = new SweepForm(store, client, later, (name) => this.show(name));
   }
 
@@ -119,6 +122,7 @@ export class SweepDesk {
       panels: null,
       fixed: {},
       cell: null,
+      results: { ...initialSweepResults(), published: this.page.results.published },
     });
   }
 

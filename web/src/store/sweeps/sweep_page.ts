@@ -2,6 +2,8 @@
 import type { SweepEntry, SweepState } from '../../protocol/sweep_types';
 import type { SweepFormState } from './sweep_form';
 import type { SweepFigure } from './sweep_matrix';
+import type { SweepResultsState } from './sweep_results';
+import { initialSweepResults } from './sweep_results';
 
 export interface SweepPage {
   open: boolean;
@@ -21,6 +23,7 @@ export interface SweepPage {
   /** The cell whose flights are listed, as JSON text. */
   cell: string | null;
   error: string | null;
+  results: SweepResultsState;
   /** A sweep that is being prepared; null = none. */
   form: SweepFormState | null;
 }
@@ -38,6 +41,7 @@ export function initialSweepPage(): SweepPage {
     fixed: {},
     cell: null,
     error: null,
+    results: initialSweepResults(),
     form: null,
   };
 }

@@ -14,8 +14,10 @@ import {
 } from '../../store/sweeps/sweep_matrix';
 import { h, rebuild, setText } from '../dom';
 import type { Context, View } from '../view';
+import { labelled, select } from './sweep_controls';
 import { SweepFormView } from './sweep_form_view';
 import { stateOf, SweepHead } from './sweep_head';
+import { SweepResultsView } from './sweep_results_view';
 
 export class SweepPageView implements View {
   readonly root: HTMLElement;
@@ -27,11 +29,13 @@ export class SweepPageView implements View {
   private readonly matrices = h('div', { class: 'sweep-matrices' });
   private readonly flights = h('section', { class: 'sweep-flights', 'aria-label': 'Flights' });
   private readonly differences = h('section', { class: 'sweep-differences' });
+  private readonly results: SweepResultsView;
   private readonly message = h('div', { class: 'log-message', 'data-role': 'sweep-message' });
 
   constructor(private readonly context: Context) {
     this.head = new SweepHead(context);
     this.form = new SweepFormView(context);
+    this.results = new SweepResultsView(context);
     this.add.addEventListener('click', () => void context.sweeps.form.open());
     const close = h(
       'button',
@@ -48,7 +52,14 @@ export class SweepPageView implements View {
         { class: 'sweep-centre' },
         this.head.root,
         this.tools,
-        h('div', { class: 'sweep-body' }, this.matrices, this.flights, this.differences),
+        h(
+          'div',
+          { class: 'sweep-body' },
+          this.matrices,
+          this.flights,
+          this.differences,
+          this.results.root,
+        ),
         this.message,
         this.form.root,
       ),
@@ -68,6 +79,7 @@ export class SweepPageView implements View {
     for (const part of [this.head.root, this.tools, this.matrices]) {
       part.hidden = shown === null;
     }
+    this.results.root.hidden = shown === null || shown.table === null;
     if (shown === null) {
       this.flights.hidden = true;
       this.differences.hidden = true;
@@ -79,6 +91,7 @@ export class SweepPageView implements View {
     this.drawMatrices(matrices);
     this.drawFlights(shown);
     this.drawDifferences(shown);
+    if (shown.table !== null) this.results.draw(shown.sweep, page.sweeps ?? []);
   }
 
   private messageText(): string {
@@ -359,23 +372,4 @@ function cellTitle({ sweep }: SweepState, row: SweepRow | undefined): string {
   return sweep.axes
     .map(({ name, label, unit }) => `${label} ${valueText(row?.cell[name] ?? null, unit)}`)
     .join(', ');
-}
-
-function labelled(text: string, control: HTMLElement): HTMLElement {
-  return h('label', {}, text, control);
-}
-
-function select(
-  id: string,
-  options: readonly (readonly [string, string])[],
-  chosen: string,
-  choose: (value: string) => void,
-): HTMLSelectElement {
-  const control = h(
-    'select',
-    { 'data-role': id },
-    ...options.map(([value, label]) => h('option', { value, selected: value === chosen }, label)),
-  );
-  control.addEventListener('change', () => choose(control.value));
-  return control;
 }
