@@ -1,6 +1,7 @@
 // What an autopilot needs to know of an estimate: the drift between position fixes, and whether the
 // covariances that it states are honest.
 import type { AlignmentErrors, FixDrift, Nees } from '../protocol/rest_types';
+import type { ErrorColumn } from './error_figures';
 import type { ErrorRow } from './error_table';
 import { formatNumber, kNothing } from './format';
 
@@ -86,16 +87,8 @@ export function neesRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
   });
 }
 
-/** Figures of some estimates as columns: only those that any of them has. */
-export interface FixFigure {
-  key: string;
-  label: string;
-  unit: string;
-  text: (errors: AlignmentErrors) => string;
-  bad: (errors: AlignmentErrors) => boolean;
-}
-
-export function fixFigures(errors: readonly AlignmentErrors[]): FixFigure[] {
+/** As columns: only those that any of the errors has. */
+export function fixColumns(errors: readonly AlignmentErrors[]): ErrorColumn[] {
   return [
     ...shownFixIntervals_m(errors).map((interval_m) => ({
       key: `fix_drift_${interval_m}m`,

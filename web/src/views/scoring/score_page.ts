@@ -1,14 +1,13 @@
 // The page that scores trajectories of files, runs and logs: choice, plots over time, table.
 import type { Evaluation } from '../../protocol/score_types';
-import { formatNumber, kNothing } from '../../store/format';
+import type { ErrorColumn } from '../../store/error_figures';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { ScoreRow } from '../../store/scoring/score_rows';
 import {
   exportScores,
-  kScoreFigures,
   offsetTexts,
   scoreAlignments,
-  scoreFixFigures,
+  scoreColumns,
   scoreRows,
 } from '../../store/scoring/score_rows';
 import { shortName } from '../../store/scoring/score_desk';
@@ -211,7 +210,7 @@ export class ScorePageView implements View {
     this.table.hidden = rows.length === 0;
     const offsets = scores === null ? [] : offsetTexts(scores);
     rebuild(this.offsets, JSON.stringify(offsets), () => offsets.map((text) => h('li', {}, text)));
-    const figures = [...kScoreFigures, ...(scores === null ? [] : scoreFixFigures(scores))];
+    const columns = scores === null ? [] : scoreColumns(scores);
     rebuild(this.table, JSON.stringify(rows), () => [
       h(
         'thead',
@@ -221,12 +220,12 @@ export class ScorePageView implements View {
           {},
           h('th', {}, 'Trajectory'),
           h('th', {}, 'Alignment'),
-          ...figures.map(({ label, unit }) =>
+          ...columns.map(({ label, unit }) =>
             h('th', { scope: 'col' }, label, h('span', { class: 'unit' }, ` ${unit}`)),
           ),
         ),
       ),
-      h('tbody', {}, ...rows.map((row) => tableRow(row, figures.length))),
+      h('tbody', {}, ...rows.map((row) => tableRow(row, columns))),
     ]);
   }
 
@@ -239,13 +238,17 @@ export class ScorePageView implements View {
   }
 }
 
-/** @param figures  number of columns with figures */
-function tableRow(row: ScoreRow, figures: number): HTMLElement {
-  const { estimate, index, alignment, values, extras, hints, failed } = row;
+function tableRow(row: ScoreRow, columns: readonly ErrorColumn[]): HTMLElement {
+  const { estimate, index, alignment, cells, hints, failed } = row;
   const colour = `color:${estimateColour(index)}`;
   const head = h('th', { scope: 'row', title: estimate, style: colour }, shortName(estimate));
   if (failed) {
-    return h('tr', {}, head, h('td', { colspan: figures + 1, class: 'bad' }, hints.join(' ')));
+    return h(
+      'tr',
+      {},
+      head,
+      h('td', { colspan: columns.length + 1, class: 'bad' }, hints.join(' ')),
+    );
   }
   const mark = hints.length === 0 ? null : h('span', { class: 'chip small warn' }, '!');
   return h(
@@ -253,13 +256,8 @@ function tableRow(row: ScoreRow, figures: number): HTMLElement {
     { 'data-estimate': estimate, 'data-alignment': alignment },
     head,
     h('td', { title: hints.join('\n') }, alignment, mark),
-    ...values.map((value, i) =>
-      h(
-        'td',
-        { 'data-figure': kScoreFigures[i]?.key ?? '' },
-        value === null ? kNothing : formatNumber(value, kScoreFigures[i]?.digits ?? 3),
-      ),
+    ...cells.map(({ text, bad }, i) =>
+      h('td', { class: bad ? 'bad' : '', 'data-figure': columns[i]?.key ?? '' }, text),
     ),
-    ...extras.map(({ text, bad }) => h('td', { class: bad ? 'bad' : '' }, text)),
   );
 }
