@@ -85,6 +85,15 @@ export function shownLengths_m(errors: readonly AlignmentErrors[]): number[] {
   );
 }
 
+/** What the error over sub-paths of a length is called. */
+export function driftOf(length_m: number): { label: string; unit: string; hint: string } {
+  return {
+    label: `Drift in ${length_m} m`,
+    unit: '%',
+    hint: `Root mean square of the translation error over all sub-paths of ${length_m} m, each aligned at its beginning, in % of its length`,
+  };
+}
+
 /** The errors of a run's estimate, with the share of the flight's path as in the list of runs. */
 export function runErrors(metrics: Metrics, estimator: string, mode: string): AlignmentErrors {
   const errors = metrics.estimators?.[estimator]?.alignments?.[mode] ?? {};
@@ -99,6 +108,7 @@ export interface ErrorColumn {
   key: string;
   label: string;
   unit: string;
+  hint: string;
   text: (errors: AlignmentErrors) => string;
   bad: (errors: AlignmentErrors) => boolean;
 }
@@ -106,17 +116,17 @@ export interface ErrorColumn {
 /** Figures, drift by length, and those of fixes and covariances that any of the errors has. */
 export function errorColumns(errors: readonly AlignmentErrors[]): ErrorColumn[] {
   return [
-    ...kErrorFigures.map(({ key, label, unit, digits }) => ({
+    ...kErrorFigures.map(({ key, label, unit, hint, digits }) => ({
       key,
       label,
       unit,
+      hint,
       text: (one: AlignmentErrors) => formatNumber(numberOf(one[key]), digits),
       bad: () => false,
     })),
     ...shownLengths_m(errors).map((length_m) => ({
       key: `relative_${length_m}m`,
-      label: `Drift in ${length_m} m`,
-      unit: '%',
+      ...driftOf(length_m),
       text: (one: AlignmentErrors) =>
         formatNumber(relativeError(one, length_m)?.translation_percent, 3),
       bad: () => false,

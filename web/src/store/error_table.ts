@@ -1,6 +1,6 @@
 // Converts metrics.json to the error table: one column per estimator, one row per quantity.
 import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
-import { kErrorFigures, relativeError, runErrors, shownLengths_m } from './error_figures';
+import { driftOf, kErrorFigures, relativeError, runErrors, shownLengths_m } from './error_figures';
 import { fixRows, neesRows } from './fix_errors';
 import { formatNumber, formatPercent, kNothing, numberOf } from './format';
 
@@ -43,9 +43,7 @@ function relativeRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
     const found = errors.map((error) => relativeError(error, length_m));
     return {
       key: `relative_${length_m}m`,
-      label: `Drift in ${length_m} m`,
-      unit: '%',
-      hint: `Root mean square of the translation error over all sub-paths of ${length_m} m, each aligned at its beginning, in % of its length`,
+      ...driftOf(length_m),
       cells: found.map((one) => formatNumber(one?.translation_percent, 3)),
       cellHints: found.map((one) =>
         one === undefined

@@ -16,32 +16,35 @@ interface Trait {
 
 /** By run id. */
 export function runTraits(runs: readonly Run[]): Map<string, RunTraits> {
-  const traits = new Map(runs.map((run) => [run, traitsOf(run)]));
   // Flights of different kinds have different traits: only equal numbers of them are comparable.
-  const groups = new Map<string, Run[]>();
+  const groups = new Map<string, { id: string; traits: Trait[] }[]>();
   for (const run of runs) {
-    const key = `${run.title || run.scenario}\n${traits.get(run)?.length ?? 0}`;
-    const group = groups.get(key);
-    if (group === undefined) groups.set(key, [run]);
-    else group.push(run);
+    const traits = traitsOf(run);
+    const key = `${run.title || run.scenario}\n${traits.length}`;
+    const group = groups.get(key) ?? [];
+    group.push({ id: run.id, traits });
+    groups.set(key, group);
   }
   const found = new Map<string, RunTraits>();
   for (const group of groups.values()) {
-    const columns = traits.get(group[0] as Run)?.length ?? 0;
-    const differs = Array.from({ length: columns }, (_, k) => {
-      return new Set(group.map((run) => traits.get(run)?.[k]?.text)).size > 1;
-    });
-    for (const run of group) {
-      const own = traits.get(run) ?? [];
+    const differs = (group[0]?.traits ?? []).map(
+      (_, k) => new Set(group.map(({ traits }) => traits[k]?.text)).size > 1,
+    );
+    for (const { id, traits } of group) {
       const texts = (keep: (trait: Trait, k: number) => boolean) =>
-        own.filter(keep).flatMap(({ text }) => (text === '' ? [] : [text]));
-      found.set(run.id, {
+        traits.filter(keep).flatMap(({ text }) => (text === '' ? [] : [text]));
+      found.set(id, {
         differing: texts((_, k) => differs[k] === true),
         common: texts(({ always }, k) => always && differs[k] !== true),
       });
     }
   }
   return found;
+}
+
+/** Texts in the order of the whole; '' = none. */
+export function traitTexts(run: Run): string[] {
+  return traitsOf(run).map(({ text }) => text);
 }
 
 function traitsOf({ flight, scenario, estimators, pacing, seed }: Run): Trait[] {

@@ -125,8 +125,8 @@ export class ScorePageView implements View {
           {},
           h('th', {}, 'Trajectory'),
           h('th', {}, 'Alignment'),
-          ...columns.map(({ label, unit }) =>
-            h('th', { scope: 'col' }, label, h('span', { class: 'unit' }, ` ${unit}`)),
+          ...columns.map(({ label, unit, hint }) =>
+            h('th', { scope: 'col', title: hint }, label, h('span', { class: 'unit' }, ` ${unit}`)),
           ),
         ),
       ),
