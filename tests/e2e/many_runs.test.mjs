@@ -67,7 +67,10 @@ describe('a thousand runs', { skip, timeout: 600_000 }, () => {
     const line = page.locator(`.run[data-run="${id}"] [data-role=flight]`);
     const airspeed = flight.split(', ')[0];
     assert.equal(await line.locator('b').innerText(), `${airspeed}, seed ${seed}`);
-    assert.equal(await line.innerText(), `${airspeed}, seed ${seed} · 45 deg/s, 300 m above the ground`);
+    assert.equal(
+      await line.innerText(),
+      `${airspeed}, seed ${seed} · 45 deg/s, 300 m above the ground`,
+    );
     await dashboard.screenshot('many_runs_1600x900');
   });
 
@@ -105,7 +108,9 @@ describe('a thousand runs', { skip, timeout: 600_000 }, () => {
     );
     await dashboard.screenshot('many_runs_filtered_1600x900');
     await page.locator('#run-order').selectOption('largest-error');
-    const worst = lost.toSorted((a, b) => b.results[0].position_rmse_m - a.results[0].position_rmse_m);
+    const worst = lost.toSorted(
+      (a, b) => b.results[0].position_rmse_m - a.results[0].position_rmse_m,
+    );
     assert.equal((await entries())[0], worst[0].id);
     await page.locator('#run-order').selectOption('newest');
     await page.locator('[data-role=clear-filter]').press('Enter');

@@ -88,7 +88,11 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
       const own = rows.filter(({ estimate }) => estimate === name);
       assert.deepEqual(own.map(({ alignment }) => alignment).toSorted(), Object.keys(alignments));
       for (const row of own) {
-        numbers += assertFigures(row, alignments[row.alignment], ['truth', 'estimate', 'alignment']);
+        numbers += assertFigures(row, alignments[row.alignment], [
+          'truth',
+          'estimate',
+          'alignment',
+        ]);
       }
     }
     return { rows, numbers };
@@ -194,7 +198,9 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
       page.waitForEvent('download'),
       page.locator('.score-page .plot-files').selectOption('csv'),
     ]);
-    const [head, ...lines] = readFileSync(await download.path(), 'utf8').trimEnd().split('\n');
+    const [head, ...lines] = readFileSync(await download.path(), 'utf8')
+      .trimEnd()
+      .split('\n');
     assert.equal(head, 'plot,unit,curve,length_m,value');
     const [{ alignments }] = evaluate('truth.tum', 'kitti/00.txt');
     const saved = lines.filter((line) => line.startsWith('translation_percent,%,uploads/00.tum,'));

@@ -57,7 +57,9 @@ const lines = (rows) => rows.map((row) => `${row}\n`).join('');
 
 export function tumText(poses) {
   return lines(
-    poses.map(({ t_s, position, rotation }) => [t_s.toFixed(6), ...position, ...rotation].join(' ')),
+    poses.map(({ t_s, position, rotation }) =>
+      [t_s.toFixed(6), ...position, ...rotation].join(' '),
+    ),
   );
 }
 

@@ -20,7 +20,6 @@ const kGroups: readonly { name: ScoreGroup; label: string; hint: string; columns
   { name: 'errors', label: 'Errors', hint: 'Errors over time', columns: 3 },
   { name: 'drift', label: 'Drift', hint: 'Relative errors by the length of the path', columns: 2 },
 ];
-const kLeastHeight_px = 92;
 
 export class ScorePlots {
   readonly root = h('div', { class: 'plot-grid' });
@@ -122,14 +121,8 @@ export class ScorePlots {
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
     );
-    if (this.group === 'path') {
-      this.root.removeAttribute('style');
-      this.takePaths();
-    } else {
-      const down = Math.ceil(specs.length / columns);
-      this.root.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
-      this.root.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
-    }
+    if (this.group === 'path') this.takePaths();
+    this.root.style.setProperty('--columns', String(columns));
     this.root.dataset['group'] = this.group;
     this.root.dataset['alignment'] = this.scored().mode;
     const parts = this.group === 'path' ? this.paths.map(({ plot }) => plot) : this.plots;
