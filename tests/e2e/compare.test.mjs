@@ -1,12 +1,14 @@
 // Two flights compared: added to each other, shown on one clock in every panel, moved against each
 // other, saved to files, and opened again by the address alone.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
+import { assertFigures, copyFrom, csvRows } from './support/copied_errors.mjs';
 import { flyCourse } from './support/flights.mjs';
-import { getJson, serverMissing } from './support/server.mjs';
+import { getJson, programFile, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -91,6 +93,41 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
       const expected = estimators.feature.alignments.init_scale.position_rmse_m;
       assert.equal(rmse[i], expected.toFixed(3));
     }
+  });
+
+  step('copies every figure of both as overfly evaluate prints it', async () => {
+    const texts = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
+    const csv = await copyFrom(page, '#copy-errors', 'CSV');
+    const rows = csvRows(csv);
+    let numbers = 0;
+    for (const id of [kSlow, kFast]) {
+      const folder = path.join(stage.runs.folder, id);
+      const answer = execFileSync(programFile(), [
+        ...['evaluate', '--run', folder, '--alignment', 'all', '--json'],
+      ]);
+      const { flight, estimators } = JSON.parse(answer.toString());
+      const { alignments, outcome, coverage } = estimators.feature;
+      const own = rows.filter(({ run }) => run === id);
+      assert.deepEqual(own.map(({ alignment }) => alignment).toSorted(), Object.keys(alignments));
+      for (const row of own) {
+        const errors = alignments[row.alignment];
+        const percent_of_path = (100 * errors.position_rmse_m) / flight.path_length_m;
+        numbers += assertFigures(row, { ...errors, percent_of_path }, texts);
+        assert.equal(row.outcome, outcome);
+        assert.equal(Number(row.coverage), coverage);
+      }
+    }
+    assert.ok(numbers > 2 * 7 * 6, `${numbers} numbers`);
+    const markdown = await copyFrom(page, '#copy-errors', 'Markdown');
+    assert.match(markdown, /^\| Run \| Estimator .*\| Horizontal \[m\] \| Vertical \[m\] \| Of the path \[%\] \|/);
+    const shown = await dashboard.errors();
+    const [first] = markdown.split('\n').filter((line) => line.includes('| init_scale |'));
+    for (const key of ['horizontal_rmse_m', 'vertical_rmse_m', 'percent_of_path']) {
+      assert.ok(first.includes(` ${shown[key][0]} `), `${key} in ${first}`);
+    }
+    const latex = await copyFrom(page, '#copy-errors', 'LaTeX');
+    assert.match(latex, /^\\begin\{tabular\}\{l{4}r+\}\n.*Of the path \[\\%\].*\\end\{tabular\}\n$/s);
+    assert.equal(latex.split('\n').filter((line) => line.includes('&')).length, rows.length + 1);
   });
 
   step('shows what differs between them', async () => {

@@ -1,5 +1,6 @@
 // Flights that a test shows, flown by the program before.
 import { execFileSync } from 'node:child_process';
+import { linkSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { programFile, sourceFile } from './server.mjs';
 
@@ -9,4 +10,30 @@ export function flyCourse(runs, id, fields) {
   const scenario = sourceFile('scenarios/course.json');
   const out = path.join(runs, id);
   execFileSync(programFile(), ['run', scenario, '--out', out, '--quiet', ...overrides]);
+}
+
+/**
+ * Many run folders that look like one flight: what the list of runs reads of each is its own, the
+ * rest is shared.
+ * @param change is given the number, the manifest and the metrics, which it may change
+ */
+export function multiplyFlight(runs, id, count, change) {
+  const source = path.join(runs, id);
+  const read = (name) => readFileSync(path.join(source, name), 'utf8');
+  const [manifest, metrics] = [read('manifest.json'), read('metrics.json')];
+  for (let i = 0; i < count; i += 1) {
+    const own = { manifest: JSON.parse(manifest), metrics: JSON.parse(metrics) };
+    change(i, own);
+    const folder = path.join(runs, `20260101-000000-${String(i).padStart(4, '0')}`);
+    mkdirSync(folder);
+    for (const [name, content] of Object.entries(own)) {
+      writeFileSync(path.join(folder, `${name}.json`), JSON.stringify(content));
+    }
+    const created_utc = new Date(Date.UTC(2026, 0, 1) + i * 1000).toISOString();
+    writeFileSync(path.join(folder, 'created.json'), JSON.stringify({ created_utc }));
+    for (const name of ['scenario.json', 'timings.json', 'frames.jsonl', 'truth.tum']) {
+      linkSync(path.join(source, name), path.join(folder, name));
+    }
+  }
+  rmSync(source, { recursive: true });
 }

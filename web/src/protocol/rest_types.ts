@@ -97,7 +97,6 @@ export interface ScenarioEntry {
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type JsonObject = Record<string, Json>;
 
-/** Errors of one estimate under one alignment; null if not available. */
 /** Errors over the sub-paths of one length. */
 export interface RelativeError {
   length_m: number;
@@ -137,6 +136,7 @@ export interface Consistency {
   honesty: string | null;
 }
 
+/** Errors of one estimate under one alignment; null if not available. */
 export interface AlignmentErrors {
   relative?: RelativeError[];
   fix_drift?: FixDrift[];
@@ -144,6 +144,10 @@ export interface AlignmentErrors {
   consistency?: Consistency;
   scale?: number | null;
   position_rmse_m?: number | null;
+  horizontal_rmse_m?: number | null;
+  vertical_rmse_m?: number | null;
+  /** Only of evaluations: metrics have the flight's path instead. */
+  percent_of_path?: number | null;
   rotation_rmse_deg?: number | null;
   position_rmse_hold_m?: number | null;
   rotation_euler_norm_rmse_deg?: number | null;
@@ -166,6 +170,7 @@ export interface EstimatorMetrics {
 }
 
 export interface Metrics {
+  flight?: { duration_s?: number; path_length_m?: number };
   estimators?: Record<string, EstimatorMetrics>;
   camera?: {
     frames?: number;

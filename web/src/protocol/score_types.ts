@@ -34,12 +34,6 @@ export interface ScoredTruth {
   series?: PoseSeries;
 }
 
-export type ScoredErrors = AlignmentErrors & {
-  horizontal_rmse_m?: number | null;
-  vertical_rmse_m?: number | null;
-  percent_of_path?: number | null;
-};
-
 /** Offsets that explain at least half of the mean square error; null = none does. */
 export interface ScoredOffsets {
   clock: {
@@ -61,7 +55,7 @@ export interface ScoredEstimate {
   poses?: number;
   matched?: number;
   warnings?: string[];
-  alignments?: Record<string, ScoredErrors>;
+  alignments?: Record<string, AlignmentErrors>;
   offsets?: ScoredOffsets;
   series?: Record<string, PoseSeries & { axis_errors: SeriesTable; errors: SeriesTable }>;
   /** Why it could not be read or matched. */

@@ -1,11 +1,6 @@
 // Converts metrics.json to the error table: one column per estimator, one row per quantity.
-import type {
-  AlignmentErrors,
-  EstimatorMetrics,
-  Metrics,
-  RelativeError,
-  Run,
-} from '../protocol/rest_types';
+import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protocol/rest_types';
+import { driftOf, kErrorFigures, relativeError, runErrors, shownLengths_m } from './error_figures';
 import { fixRows, neesRows } from './fix_errors';
 import { formatNumber, formatPercent, kNothing, numberOf } from './format';
 
@@ -43,76 +38,12 @@ export function alignmentModes(metrics: Metrics | null): string[] {
   return modes.has(kDefaultAlignment) ? [kDefaultAlignment, ...rest] : rest;
 }
 
-interface Figure {
-  key: keyof AlignmentErrors;
-  label: string;
-  unit: string;
-  hint: string;
-  digits: number;
-}
-
-/** The errors of an estimate under one alignment. */
-export const kErrorFigures: readonly Figure[] = [
-  { key: 'scale', label: 'Scale', unit: '', hint: 'Metres per unit of the estimate', digits: 4 },
-  {
-    key: 'position_rmse_m',
-    label: 'Position RMSE',
-    unit: 'm',
-    hint: 'Over tracked frames',
-    digits: 3,
-  },
-  {
-    key: 'position_rmse_hold_m',
-    label: 'Position RMSE, held',
-    unit: 'm',
-    hint: 'Last pose held to the end of the flight',
-    digits: 3,
-  },
-  {
-    key: 'rotation_rmse_deg',
-    label: 'Rotation RMSE',
-    unit: 'deg',
-    hint: 'Geodesic angle',
-    digits: 3,
-  },
-  {
-    key: 'rotation_euler_norm_rmse_deg',
-    label: 'Rotation, Euler norm',
-    unit: 'deg',
-    hint: 'Norm of the wrapped roll, pitch and yaw errors',
-    digits: 3,
-  },
-];
-
-/** Lengths of the sub-paths whose errors are shown [m]; the metrics have every hundred to 800 m. */
-export const kRelativeLengths_m: readonly number[] = [100, 200, 400, 800, 1000, 2000, 5000];
-/** Longer ones are shown where the path has them. */
-const kAlwaysShown_m = 800;
-
-/** Errors over sub-paths of one length, as of KITTI; undefined if the path is shorter. */
-export function relativeError(
-  errors: AlignmentErrors,
-  length_m: number,
-): RelativeError | undefined {
-  return errors.relative?.find((one) => one.length_m === length_m);
-}
-
-/** The lengths that a table of these errors shows. */
-export function shownLengths_m(errors: readonly AlignmentErrors[]): number[] {
-  return kRelativeLengths_m.filter(
-    (length_m) =>
-      length_m <= kAlwaysShown_m || errors.some((error) => relativeError(error, length_m)),
-  );
-}
-
 function relativeRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
   return shownLengths_m(errors).map((length_m) => {
     const found = errors.map((error) => relativeError(error, length_m));
     return {
       key: `relative_${length_m}m`,
-      label: `Drift in ${length_m} m`,
-      unit: '%',
-      hint: `Root mean square of the translation error over all sub-paths of ${length_m} m, each aligned at its beginning, in % of its length`,
+      ...driftOf(length_m),
       cells: found.map((one) => formatNumber(one?.translation_percent, 3)),
       cellHints: found.map((one) =>
         one === undefined
@@ -133,7 +64,7 @@ export function errorTable(
   scored.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
   const names = scored.map(([name]) => name);
   const estimators = scored.map(([, estimator]) => estimator);
-  const errors = estimators.map(({ alignments }) => alignments?.[mode] ?? {});
+  const errors = names.map((name) => runErrors(metrics, name, mode));
   return {
     estimators: estimators.map((estimator, i) => ({
       name: names[i] ?? '',

@@ -1,6 +1,7 @@
 // What an autopilot needs to know of an estimate: the drift between position fixes, and whether the
 // covariances that it states are honest.
 import type { AlignmentErrors, FixDrift, Nees } from '../protocol/rest_types';
+import type { ErrorColumn } from './error_figures';
 import type { ErrorRow } from './error_table';
 import { formatNumber, kNothing } from './format';
 
@@ -12,6 +13,9 @@ export const kNeesParts = [
   { part: 'rotation', label: 'NEES rotation' },
   { part: 'pose', label: 'NEES pose' },
 ] as const;
+
+const kNeesHint =
+  'Mean normalised estimation error squared, and in brackets the band in which it lies with a probability of 95 % if the stated covariances are true';
 
 export const kOverconfident = 'overconfident';
 
@@ -48,14 +52,21 @@ function neesHint(nees: Nees | null | undefined): string {
   return `${samples} poses; ${degrees} is expected. Errors are ${formatNumber(deviation_ratio, 2)} times the stated standard deviations`;
 }
 
+function fixDriftOf(interval_m: number): { label: string; unit: string; hint: string } {
+  const km = `${interval_m / 1000} km`;
+  return {
+    label: `Drift between fixes, ${km}`,
+    unit: 'm',
+    hint: `Position error when the next fix comes, with a fix of position and orientation every ${km}: median, and the worst in brackets`,
+  };
+}
+
 export function fixRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
   return shownFixIntervals_m(errors).map((interval_m) => {
     const found = errors.map((error) => fixDrift(error, interval_m));
     return {
       key: `fix_drift_${interval_m}m`,
-      label: `Drift between fixes, ${interval_m / 1000} km`,
-      unit: 'm',
-      hint: `Position error when the next fix comes, with a fix of position and orientation every ${interval_m / 1000} km: median, and the worst in brackets`,
+      ...fixDriftOf(interval_m),
       cells: found.map(fixDriftText),
       cellHints: found.map((one) =>
         one === undefined
@@ -77,7 +88,7 @@ export function neesRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
         key: `nees_${part}`,
         label,
         unit: '',
-        hint: 'Mean normalised estimation error squared, and in brackets the band in which it lies with a probability of 95 % if the stated covariances are true',
+        hint: kNeesHint,
         cells: found.map(neesText),
         cellHints: found.map(neesHint),
         bad: found.map((nees) => nees?.honesty === kOverconfident),
@@ -86,21 +97,12 @@ export function neesRows(errors: readonly AlignmentErrors[]): ErrorRow[] {
   });
 }
 
-/** Figures of some estimates as columns: only those that any of them has. */
-export interface FixFigure {
-  key: string;
-  label: string;
-  unit: string;
-  text: (errors: AlignmentErrors) => string;
-  bad: (errors: AlignmentErrors) => boolean;
-}
-
-export function fixFigures(errors: readonly AlignmentErrors[]): FixFigure[] {
+/** As columns: only those that any of the errors has. */
+export function fixColumns(errors: readonly AlignmentErrors[]): ErrorColumn[] {
   return [
     ...shownFixIntervals_m(errors).map((interval_m) => ({
       key: `fix_drift_${interval_m}m`,
-      label: `Drift between fixes, ${interval_m / 1000} km`,
-      unit: 'm',
+      ...fixDriftOf(interval_m),
       text: (error: AlignmentErrors) => fixDriftText(fixDrift(error, interval_m)),
       bad: () => false,
     })),
@@ -112,6 +114,7 @@ export function fixFigures(errors: readonly AlignmentErrors[]): FixFigure[] {
         key: `nees_${part}`,
         label,
         unit: '',
+        hint: kNeesHint,
         text: ({ consistency }: AlignmentErrors) => neesText(consistency?.[part]),
         bad: ({ consistency }: AlignmentErrors) => consistency?.[part]?.honesty === kOverconfident,
       })),

@@ -1,16 +1,11 @@
 // Short names of runs that are shown together: what differs between them.
 import type { Run } from '../protocol/rest_types';
 import { formatDate } from './format';
+import { traitTexts } from './runs/run_traits';
 
 /** By run id. Runs that differ in nothing else are named by their start. */
 export function distinguishingNames(runs: readonly Run[]): Map<string, string> {
-  const parts = runs.map((run) => [
-    run.title,
-    ...run.flight.split(', '),
-    run.estimators.join(' + '),
-    run.pacing,
-    `seed ${run.seed}`,
-  ]);
+  const parts = runs.map((run) => [run.title, ...traitTexts(run)]);
   // Flights of different kinds have different parts: only equal numbers of parts are comparable.
   const comparable = parts.every(({ length }) => length === parts[0]?.length);
   const named = runs.map((run, i) => {

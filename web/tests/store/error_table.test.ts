@@ -3,14 +3,15 @@ import type { Metrics } from '../../src/protocol/rest_types';
 import {
   alignmentModes,
   errorTable,
-  shownLengths_m,
   texelsPerPixel,
   textureHint,
   textureLimited,
 } from '../../src/store/error_table';
+import { shownLengths_m } from '../../src/store/error_figures';
 import { sampleRun } from '../support/samples';
 
 const metrics: Metrics = {
+  flight: { duration_s: 10, path_length_m: 345.6 },
   estimators: {
     feature: {
       outcome: 'LOST',
@@ -22,6 +23,8 @@ const metrics: Metrics = {
         init_scale: {
           scale: 41.20314,
           position_rmse_m: 3.456,
+          horizontal_rmse_m: 3.4,
+          vertical_rmse_m: 0.62,
           position_rmse_hold_m: 500,
           rotation_rmse_deg: 0.5,
           rotation_euler_norm_rmse_deg: null,
@@ -56,6 +59,9 @@ describe('errorTable', () => {
       coverage: ['50.0 %', '0.0 %'],
       scale: ['41.2031', '–'],
       position_rmse_m: ['3.456', '–'],
+      horizontal_rmse_m: ['3.400', '–'],
+      vertical_rmse_m: ['0.620', '–'],
+      percent_of_path: ['1.000', '–'],
       position_rmse_hold_m: ['500.000', '–'],
       rotation_rmse_deg: ['0.500', '–'],
       rotation_euler_norm_rmse_deg: ['–', '–'],
@@ -65,6 +71,11 @@ describe('errorTable', () => {
       relative_800m: ['–', '–'],
       dropped_frames: ['3', '–'],
     });
+  });
+
+  it('has no share of a path that is not known', () => {
+    const { rows } = errorTable({ ...metrics, flight: {} }, 'init_scale');
+    expect(rows.find(({ key }) => key === 'percent_of_path')?.cells).toEqual(['–', '–']);
   });
 
   it('shows kilometres between position fixes where the path has them', () => {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { AlignmentErrors, Nees } from '../../src/protocol/rest_types';
 import { errorTable, joinedTables } from '../../src/store/error_table';
-import { fixFigures, kFixCsvHead, fixCsvValues } from '../../src/store/fix_errors';
+import { fixColumns, kFixCsvHead, fixCsvValues } from '../../src/store/fix_errors';
 
 const nees = (mean: number, honesty: string): Nees => ({
   degrees: 3,
@@ -69,13 +69,13 @@ describe('fix errors', () => {
   });
 
   it('has them as columns, and with every digit as CSV', () => {
-    expect(fixFigures([{}, long]).map(({ label }) => label)).toEqual([
+    expect(fixColumns([{}, long]).map(({ label }) => label)).toEqual([
       'Drift between fixes, 1 km',
       'Drift between fixes, 2 km',
       'NEES position',
       'NEES rotation',
     ]);
-    expect(fixFigures([{}])).toEqual([]);
+    expect(fixColumns([{}])).toEqual([]);
     const values = fixCsvValues(long);
     expect(values).toHaveLength(kFixCsvHead.length);
     expect(values[kFixCsvHead.indexOf('fix_drift_median_1000m')]).toBe(3.456);

@@ -30,12 +30,16 @@ export function uploadSets<File extends NamedFile>(
   return [[mapping, ...pieces], ...others.map((file): UploadSet<File> => [file])];
 }
 
-/** The parameters of the request; a space is no part of a log's name on the server. */
+/** A name that the server permits; a space is no part of it. */
+export function plainName(name: string): string {
+  return name.replaceAll(/[^\w.-]/g, '_');
+}
+
+/** The parameters of the request. */
 export function uploadQuery(files: UploadSet<NamedFile>): string {
-  const plain = (name: string) => name.replaceAll(/[^\w.-]/g, '_');
   const [first] = files;
-  if (files.length === 1) return `name=${encodeURIComponent(plain(first.name))}`;
+  if (files.length === 1) return `name=${encodeURIComponent(plainName(first.name))}`;
   // The mapping names its pieces: their names stay.
-  const entries = files.map(({ name, size }, i) => `${i === 0 ? plain(name) : name}:${size}`);
+  const entries = files.map(({ name, size }, i) => `${i === 0 ? plainName(name) : name}:${size}`);
   return `files=${encodeURIComponent(entries.join(','))}`;
 }

@@ -1,5 +1,24 @@
 // The part of the ground plane or of a vertical plane that a path plot shows: equal scales on both
 // axes, so that a circle is a circle.
+import type { CurveHue } from './plot_specs';
+
+/** A track as it is drawn. */
+export interface Path {
+  hue: CurveHue;
+  x: ArrayLike<number>;
+  y: ArrayLike<number>;
+  t: ArrayLike<number>;
+  /** Seconds of the clock = t * t_scale_s + t_offset_s. */
+  t_scale_s: number;
+  t_offset_s: number;
+}
+
+/** Where a track is at the clock's time. */
+export interface PathMark {
+  hue: CurveHue;
+  x: number;
+  y: number;
+}
 
 export interface Box {
   min: [number, number];

@@ -2,13 +2,18 @@
 import { csvLine } from '../csv';
 import { decimated } from './curve';
 import { ticks, tickText } from './path_frame';
-import type { CurveHue, PlotSpec } from './plot_specs';
+import type { CurveHue, PlotBase, PlotSpec } from './plot_specs';
+import { kTimeBase } from './plot_specs';
 import { paddedRange } from './plot_range';
 import type { Span } from '../time_window';
 
-/** All values of all curves: one line each. Times are those of the clock. */
+/**
+ * All values of all curves: one line each. Times are those of the clock.
+ * @param specs  over the same base
+ */
 export function plotsCsv(specs: readonly PlotSpec[]): string {
-  const lines = [csvLine(['plot', 'unit', 'curve', 't_s', 'value'])];
+  const base = specs[0]?.over ?? kTimeBase;
+  const lines = [csvLine(['plot', 'unit', 'curve', base.column, 'value'])];
   for (const { key, unit, curves } of specs) {
     for (const { name, curve } of curves) {
       const now = curve();
@@ -99,7 +104,7 @@ function onePlot(spec: PlotSpec, span_s: Span, style: SvgStyle): string {
   });
   const area = { x, y, low, high, plotWidth, plotHeight };
   const clip = `<svg x="${kLeft_px}" y="${kTop_px}" width="${plotWidth}" height="${plotHeight}" viewBox="${kLeft_px} ${kTop_px} ${plotWidth} ${plotHeight}">${paths.join('')}</svg>`;
-  return titles(spec, style) + axes(span_s, area, style) + clip;
+  return titles(spec, style) + axes(span_s, area, style, spec.over ?? kTimeBase) + clip;
 }
 
 interface Area {
@@ -122,7 +127,7 @@ function titles({ label, unit, curves }: PlotSpec, style: SvgStyle): string {
   );
 }
 
-function axes(span_s: Span, area: Area, style: SvgStyle): string {
+function axes(span_s: Span, area: Area, style: SvgStyle, base: PlotBase): string {
   const { x, y, low, high, plotWidth, plotHeight } = area;
   const bottom = kTop_px + plotHeight;
   const times = ticks(span_s[0], span_s[1], plotWidth / kTickSpace_px);
@@ -143,7 +148,7 @@ function axes(span_s: Span, area: Area, style: SvgStyle): string {
         line(kLeft_px, y(value), kLeft_px + plotWidth, y(value)) +
         text(kLeft_px - 5, y(value) + 4, 'end', tickText(value, step(values))),
     ),
-    text(kLeft_px + plotWidth, bottom + 28, 'end', 'time [s]'),
+    text(kLeft_px + plotWidth, bottom + 28, 'end', base.label),
   ].join('');
 }
 

@@ -2,9 +2,9 @@
 import type { EstimatorResult, Run } from '../../protocol/rest_types';
 
 export const kRunOrders = {
-  newest: 'Newest first',
-  'smallest-error': 'Smallest error first',
-  'largest-error': 'Largest error first',
+  newest: 'Newest',
+  'smallest-error': 'Smallest error',
+  'largest-error': 'Largest error',
   name: 'Name',
 } as const;
 

@@ -4,13 +4,18 @@ import type { Upload } from '../../connection/upload';
 import type { EvaluationRequest } from '../../protocol/score_types';
 import type { Run } from '../../protocol/rest_types';
 import type { Store } from '../state';
+import { plainName } from '../logs/upload_set';
 import type { ScorePage } from './score_page';
+import type { PlannedUpload } from './upload_plan';
+import { uploadPlan } from './upload_plan';
 
 /** Limits of the server: estimates, and points of all of them. */
 export const kMostEstimates = 32;
 const kMostPoints = 100_000;
 const kPoints = 6000;
 const kLeastPoints = 100;
+/** Begins the name of a log's trajectory. */
+const kLog = 'log:';
 
 export interface TrajectoryChoice {
   /** As in docs/PROTOCOL.md. */
@@ -52,7 +57,7 @@ export class ScoreDesk {
     try {
       const [files, logs] = await Promise.all([this.rest.trajectories(), this.rest.logs()]);
       page.files = files;
-      page.logs = logs.logs.map(({ name }) => name);
+      page.logs = logs.logs;
       page.listError = null;
     } catch (error) {
       page.listError = textOf(error);
@@ -88,34 +93,50 @@ export class ScoreDesk {
     await this.score();
   }
 
+  /** Uploads trajectories and flight logs; each is then scored, the first without a truth as such. */
   async send(files: readonly File[]): Promise<void> {
     const { page } = this;
-    for (const file of files) {
-      const progress = (share: number) => {
-        page.upload = { name: file.name, share };
-        this.changed();
-      };
-      progress(0);
-      try {
-        const { name } = await this.rest.uploadTrajectory(this.upload, file.name, file, progress);
-        page.upload = null;
+    try {
+      for (const upload of await uploadPlan(files)) {
+        const name = await this.sendOne(upload);
         await this.readLists();
         if (page.truth === null) await this.chooseTruth(name);
-        else await this.toggle(name);
-      } catch (error) {
-        page.upload = null;
-        page.error = `${file.name}: ${textOf(error)}`;
-        this.changed();
-        return;
+        else if (name !== page.truth && !page.estimates.includes(name)) await this.toggle(name);
       }
+    } catch (error) {
+      page.error = textOf(error);
+      this.changed();
     }
   }
 
-  /** Deletes an uploaded file. */
+  /** @return the trajectory's name */
+  private async sendOne(planned: PlannedUpload): Promise<string> {
+    const progress = (share: number) => {
+      this.page.upload = { name: planned.name, share };
+      this.changed();
+    };
+    progress(0);
+    try {
+      if (planned.kind === 'trajectory') {
+        const name = plainName(planned.name);
+        return (await this.rest.uploadTrajectory(this.upload, name, planned.body, progress)).name;
+      }
+      const { query, body } = planned;
+      const never = new AbortController().signal;
+      return kLog + (await this.rest.uploadLog(this.upload, query, body, progress, never)).name;
+    } catch (error) {
+      throw new Error(`${planned.name}: ${textOf(error)}`);
+    } finally {
+      this.page.upload = null;
+    }
+  }
+
+  /** Deletes an uploaded file or log. */
   async remove(name: string): Promise<void> {
     const { page } = this;
     try {
-      await this.rest.deleteTrajectory(name);
+      if (name.startsWith(kLog)) await this.rest.deleteLog(name.slice(kLog.length));
+      else await this.rest.deleteTrajectory(name);
       page.estimates = page.estimates.filter((estimate) => estimate !== name);
       if (page.truth === name) page.truth = null;
     } catch (error) {
@@ -201,8 +222,8 @@ export function choiceGroups(page: ScorePage, runs: readonly Run[] | null): Choi
       add(`Run ${title}, ${id}`, { name, label: track, detail: '', uploaded: false });
     }
   }
-  for (const name of page.logs ?? []) {
-    add('Flight logs', { name: `log:${name}`, label: name, detail: 'truth', uploaded: false });
+  for (const { name, format, uploaded } of page.logs ?? []) {
+    add('Flight logs', { name: kLog + name, label: name, detail: format, uploaded });
   }
   return [...groups].map(([title, choices]) => ({ title, choices }));
 }

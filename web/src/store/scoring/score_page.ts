@@ -1,4 +1,5 @@
 // State of the page that scores trajectories against each other.
+import type { LogEntry } from '../../protocol/log_types';
 import type { Evaluation, TrajectoryList } from '../../protocol/score_types';
 import { kDefaultAlignment } from '../error_table';
 
@@ -6,8 +7,8 @@ export interface ScorePage {
   open: boolean;
   /** null until read. */
   files: TrajectoryList | null;
-  /** Names of flight logs; null until read. */
-  logs: string[] | null;
+  /** Flight logs; null until read. */
+  logs: LogEntry[] | null;
   listError: string | null;
   /** Name of a trajectory as in docs/PROTOCOL.md. */
   truth: string | null;

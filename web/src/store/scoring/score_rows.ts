@@ -1,62 +1,41 @@
 // The table of scores: one row for each estimate and alignment.
-import type { Evaluation, ScoredErrors } from '../../protocol/score_types';
+import type { Evaluation } from '../../protocol/score_types';
+import type { ErrorColumn } from '../error_figures';
+import { columnHead, errorColumns, errorCsvValues, kErrorCsvHead } from '../error_figures';
 import { kDefaultAlignment } from '../error_table';
-import type { FixFigure } from '../fix_errors';
-import { fixCsvValues, fixFigures, kFixCsvHead } from '../fix_errors';
-import { formatNumber, formatPercent, numberOf } from '../format';
+import { formatNumber, formatPercent, kNothing } from '../format';
 import type { TextFormat } from '../table_text';
 import { csvTable, latexTable, markdownTable } from '../table_text';
 import { shortName } from './score_desk';
-
-interface Figure {
-  key: keyof ScoredErrors;
-  label: string;
-  unit: string;
-  digits: number;
-}
-
-export const kScoreFigures: readonly Figure[] = [
-  { key: 'position_rmse_m', label: 'Position RMSE', unit: 'm', digits: 3 },
-  { key: 'horizontal_rmse_m', label: 'Horizontal', unit: 'm', digits: 3 },
-  { key: 'vertical_rmse_m', label: 'Vertical', unit: 'm', digits: 3 },
-  { key: 'percent_of_path', label: 'Of the path', unit: '%', digits: 3 },
-  { key: 'rotation_rmse_deg', label: 'Rotation RMSE', unit: 'deg', digits: 3 },
-  { key: 'scale', label: 'Scale', unit: '', digits: 4 },
-];
 
 export interface ScoreRow {
   estimate: string;
   /** Index of the estimate, for its colour. */
   index: number;
   alignment: string;
-  values: (number | null)[];
-  /** As scoreFixFigures(). */
-  extras: { text: string; bad: boolean }[];
+  /** As scoreColumns(); empty if it failed. */
+  cells: { text: string; bad: boolean }[];
   /** Warnings, and why values are missing. */
   hints: string[];
   failed: boolean;
 }
 
-/** Drift between position fixes and honesty, where any estimate has them. */
-export function scoreFixFigures({ estimates }: Evaluation): FixFigure[] {
-  return fixFigures(estimates.flatMap(({ alignments }) => Object.values(alignments ?? {})));
+export function scoreColumns({ estimates }: Evaluation): ErrorColumn[] {
+  return errorColumns(estimates.flatMap(({ alignments }) => Object.values(alignments ?? {})));
 }
 
 export function scoreRows(evaluation: Evaluation): ScoreRow[] {
   const { estimates } = evaluation;
-  const figures = scoreFixFigures(evaluation);
+  const columns = scoreColumns(evaluation);
   return estimates.flatMap(({ name, alignments, warnings, error }, index): ScoreRow[] => {
     const base = { estimate: name, index };
     if (error !== undefined) {
-      const none = kScoreFigures.map(() => null);
-      const hints = [error.message];
-      return [{ ...base, alignment: '', values: none, extras: [], hints, failed: true }];
+      return [{ ...base, alignment: '', cells: [], hints: [error.message], failed: true }];
     }
     return Object.entries(alignments ?? {}).map(([alignment, errors]) => ({
       ...base,
       alignment,
-      values: kScoreFigures.map(({ key }) => numberOf(errors[key])),
-      extras: figures.map(({ text, bad }) => ({ text: text(errors), bad: bad(errors) })),
+      cells: columns.map(({ text, bad }) => ({ text: text(errors), bad: bad(errors) })),
       hints: [...(warnings ?? []), errors.degenerate ?? '', errors.error ?? ''].filter(
         (hint) => hint !== '',
       ),
@@ -94,31 +73,27 @@ export function offsetTexts({ estimates }: Evaluation): string[] {
 export function exportScores(evaluation: Evaluation, format: TextFormat): string {
   const rows = scoreRows(evaluation);
   if (format === 'CSV') {
-    const keys = kScoreFigures.map(({ key }) => key);
     const errorsOf = ({ index, alignment }: ScoreRow) =>
       evaluation.estimates[index]?.alignments?.[alignment] ?? {};
     return csvTable(
-      ['truth', 'estimate', 'alignment', ...keys, ...kFixCsvHead],
+      ['truth', 'estimate', 'alignment', ...kErrorCsvHead],
       rows.map((row) => [
         evaluation.truth.name,
         row.estimate,
         row.alignment,
-        ...row.values.map((value) => value ?? ''),
-        ...fixCsvValues(errorsOf(row)),
+        ...errorCsvValues(errorsOf(row)),
       ]),
     );
   }
-  const figures = [...kScoreFigures, ...scoreFixFigures(evaluation)];
-  const labels = figures.map(({ label, unit }) => (unit === '' ? label : `${label} [${unit}]`));
+  const columns = scoreColumns(evaluation);
   const table = {
-    head: ['Estimate', 'Alignment', ...labels],
-    rows: rows.map(({ estimate, alignment, values, extras }) => [
+    head: ['Estimate', 'Alignment', ...columns.map(columnHead)],
+    rows: rows.map(({ estimate, alignment, cells, failed }) => [
       shortName(estimate),
       alignment,
-      ...values.map((value, i) => formatNumber(value, kScoreFigures[i]?.digits ?? 3)),
-      ...extras.map(({ text }) => text),
+      ...(failed ? columns.map(() => kNothing) : cells.map(({ text }) => text)),
     ]),
-    numbers: labels.length,
+    numbers: columns.length,
   };
   return format === 'Markdown' ? markdownTable(table) : latexTable(table);
 }

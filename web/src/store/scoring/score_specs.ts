@@ -1,9 +1,13 @@
-// Plots of scored trajectories over the time of the truth.
+// Plots of scored trajectories: over the time of the truth, seen from above and from the side, and
+// errors by the length of the sub-path.
 import type { Evaluation, SeriesTable } from '../../protocol/score_types';
+import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { Curve } from '../plots/curve';
-import type { CurveHue, CurveSpec, PlotSpec } from '../plots/plot_specs';
+import type { Path, PathMark } from '../plots/path_frame';
+import type { CurveHue, CurveSpec, PlotBase, PlotSpec } from '../plots/plot_specs';
 import { kAxisLabels } from '../plots/plot_specs';
+import { lastAtOrBefore } from '../table';
 import { shortName } from './score_desk';
 import type { Span } from '../time_window';
 
@@ -15,11 +19,32 @@ const kErrors = [
   { table: 'errors', column: 'rotation_deg', label: 'Rotation error', unit: 'deg' },
 ] as const;
 
-export type ScoreGroup = 'pose' | 'errors';
+const kDrifts = [
+  {
+    key: 'translation_percent',
+    label: 'Drift of the position',
+    unit: '%',
+    hint: 'Root mean square of the translation error over all sub-paths of a length, each aligned at its beginning, in % of the length',
+  },
+  {
+    key: 'rotation_deg_per_100m',
+    label: 'Drift of the rotation',
+    unit: 'deg/100 m',
+    hint: 'Root mean square of the rotation error over all sub-paths of a length, for every 100 m',
+  },
+] as const;
+const kLengthBase: PlotBase = { label: 'sub-path [m]', column: 'length_m' };
+
+/** So that the number of the longest is not cut off. */
+const kLengthMargin = 1.05;
+
+export type ScoreGroup = 'pose' | 'path' | 'errors' | 'drift';
 
 export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGroup): PlotSpec[] {
   const { truth, estimates } = evaluation;
   const begin_s = truth.first_s;
+  if (group === 'path') return [];
+  if (group === 'drift') return driftSpecs(evaluation, mode);
   const own = estimates.flatMap(({ name, series }, colour) => {
     const tables = series?.[mode];
     const hue: CurveHue = { kind: 'estimate', colour };
@@ -46,6 +71,60 @@ export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGro
       own.map(({ name, tables, hue }) => spec(name, hue, tables[table], column, begin_s)),
     ),
   );
+}
+
+/** Errors by the length of the sub-path (relative pose error, as of KITTI). */
+function driftSpecs({ estimates }: Evaluation, mode: string): PlotSpec[] {
+  const own = estimates.flatMap(({ name, alignments }, colour) => {
+    const relative = alignments?.[mode]?.relative ?? [];
+    const hue: CurveHue = { kind: 'estimate', colour };
+    return relative.length === 0 ? [] : [{ name: shortName(name), relative, hue }];
+  });
+  if (own.length === 0) return [];
+  return kDrifts.map(({ key, label, unit, hint }) => {
+    const curves = own.map(({ name, relative, hue }) => {
+      const lengths_m = relative.map(({ length_m }) => length_m);
+      const values = relative.map((one) => one[key]);
+      const curve = curveOf({ t_s: lengths_m, [key]: values }, key, 0);
+      return { name, short: '', hue, curve: () => curve };
+    });
+    return { key, label, unit, hint, digits: 3, least: 0.01, over: kLengthBase, curves };
+  });
+}
+
+/** The tracks by an alignment; times are those of the page's clock. */
+export function scorePaths(evaluation: Evaluation, mode: string, across: Axis, up: Axis): Path[] {
+  const { truth, estimates } = evaluation;
+  const path = (hue: CurveHue, table: SeriesTable | undefined): Path[] => {
+    const x = curveOf(table, across, truth.first_s);
+    const y = curveOf(table, up, truth.first_s);
+    if (x === null || y === null) return [];
+    const { t, t_scale_s, t_offset_s } = x;
+    return [{ hue, x: x.values, y: y.values, t, t_scale_s, t_offset_s }];
+  };
+  return [
+    ...path({ kind: 'truth', order: 0 }, truth.series?.positions),
+    ...estimates.flatMap(({ series }, colour) =>
+      path({ kind: 'estimate', colour }, series?.[mode]?.positions),
+    ),
+  ];
+}
+
+/** Where the tracks are at a time: of each the last position not later. */
+export function pathMarks(paths: readonly Path[], t_s: number): PathMark[] {
+  return paths.flatMap(({ hue, x, y, t, t_scale_s, t_offset_s }) => {
+    const row = lastAtOrBefore(t, (t_s - t_offset_s) / t_scale_s);
+    return row < 0 ? [] : [{ hue, x: x[row] ?? NaN, y: y[row] ?? NaN }];
+  });
+}
+
+/** What the plots of a group are drawn over. */
+export function groupSpan(evaluation: Evaluation, specs: readonly PlotSpec[]): Span {
+  if (specs[0]?.over === undefined) return scoreSpan(evaluation);
+  const lengths_m = specs.flatMap(({ curves }) =>
+    curves.flatMap(({ curve }) => Array.from(curve()?.t ?? [])),
+  );
+  return [0, kLengthMargin * Math.max(...lengths_m)];
 }
 
 /** From the first to the last pose of the truth. */

@@ -1,7 +1,7 @@
-// The tracks seen from above or from the side, with equal scales in metres. The wheel zooms,
-// dragging moves, a double click shows everything again, a click seeks.
+// Tracks seen from above or from the side, with equal scales in metres. The wheel zooms, dragging
+// moves, a double click shows everything again, a click seeks.
 import type { Axis } from '../../store/run_data';
-import type { Box, PathFrame, Size } from '../../store/plots/path_frame';
+import type { Box, Path, PathFrame, PathMark, Size } from '../../store/plots/path_frame';
 import {
   boxOf,
   fitted,
@@ -12,7 +12,6 @@ import {
   zoomedAt,
 } from '../../store/plots/path_frame';
 import type { State } from '../../store/state';
-import type { Track } from '../../store/tracks';
 import { tracksOf } from '../../store/tracks';
 import { curveStyle, trackHue } from '../colours';
 import { h, perFrame, setText } from '../dom';
@@ -39,20 +38,13 @@ export const kPathAxes: readonly PathAxes[] = [
   { key: 'xz', label: 'From the south', hint: 'x east, z up', across: 'x_m', up: 'z_m' },
 ];
 
-interface Path {
-  track: Track;
-  x: Float64Array;
-  y: Float64Array;
-  t_ns: Float64Array;
-}
-
 export class PathPlot {
   readonly root: HTMLElement;
   private readonly area = h('div', { class: 'path-area' });
   private readonly canvas = h('canvas', { role: 'img' });
   private readonly readout = h('span', { class: 'readout' });
-  private paths: Path[] = [];
-  private marks: { x: number; y: number; track: Track }[] = [];
+  private paths: readonly Path[] = [];
+  private marks: readonly PathMark[] = [];
   /** null = everything. */
   private chosen: PathFrame | null = null;
 
@@ -82,26 +74,35 @@ export class PathPlot {
 
   /** Takes the tracks as they are now. */
   draw(state: State): void {
-    this.paths = tracksOf(state).flatMap((track) => {
+    const paths = tracksOf(state).flatMap((track): Path[] => {
       const { run, name, shown } = track;
       const table = name === '' ? run.data.truth : run.shownEstimate(name)?.table;
       if (!shown || table === undefined) return [];
       const { across, up } = this.axes;
-      return { track, x: table.column(across), y: table.column(up), t_ns: table.column('t_ns') };
+      const [x, y, t] = [table.column(across), table.column(up), table.column('t_ns')];
+      return [{ hue: trackHue(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
     });
-    this.moveMarks(state);
+    this.show(paths, this.marksOf(state));
   }
 
-  /** Shows where every track is at the clock's time. */
   moveMarks(state: State): void {
+    this.show(this.paths, this.marksOf(state));
+  }
+
+  show(paths: readonly Path[], marks: readonly PathMark[]): void {
+    this.paths = paths;
+    this.marks = marks;
+    this.repaint();
+  }
+
+  private marksOf(state: State): PathMark[] {
     const { across, up } = this.axes;
-    this.marks = tracksOf(state).flatMap((track) => {
+    return tracksOf(state).flatMap((track) => {
       const { run, name, shown } = track;
       const pose = name === '' ? run.instant?.truth : run.instant?.estimates[name]?.pose;
       if (!shown || pose === undefined || pose === null) return [];
-      return { x: pose[across], y: pose[up], track };
+      return { x: pose[across], y: pose[up], hue: trackHue(track) };
     });
-    this.repaint();
   }
 
   private readonly repaintInFrame = perFrame<null>(() => this.paintNow());
@@ -134,11 +135,11 @@ export class PathPlot {
     const frame = this.frame();
     this.paintGrid(pen, frame, size);
     for (const path of this.paths) paintPath(pen, path, frame, size);
-    for (const { x, y, track } of this.marks) {
+    for (const { x, y, hue } of this.marks) {
       const [px, py] = toPixels(frame, size, [x, y]);
-      pen.fillStyle = paint(curveStyle(trackHue(track)).colour);
+      pen.fillStyle = paint(curveStyle(hue).colour);
       pen.beginPath();
-      pen.arc(px, py, track.name === '' ? 5 : 3.5, 0, 2 * Math.PI);
+      pen.arc(px, py, hue.kind === 'truth' ? 5 : 3.5, 0, 2 * Math.PI);
       pen.fill();
     }
   }
@@ -245,17 +246,17 @@ export class PathPlot {
     }
     if (found === null) return;
     const { path, row } = found;
-    this.onSeek((path.t_ns[row] ?? 0) / 1e9 + path.track.run.offset_s);
+    this.onSeek((path.t[row] ?? 0) * path.t_scale_s + path.t_offset_s);
   }
 }
 
 function paintPath(
   pen: CanvasRenderingContext2D,
-  { track, x, y }: Path,
+  { hue, x, y }: Path,
   frame: PathFrame,
   size: Size,
 ): void {
-  const { colour, width_px, dash } = curveStyle(trackHue(track));
+  const { colour, width_px, dash } = curveStyle(hue);
   pen.strokeStyle = paint(colour);
   pen.lineWidth = width_px;
   pen.setLineDash(dash);

@@ -28,6 +28,10 @@ function plotWidth_px(plot: uPlot): number {
   return plot.bbox.width / uPlot.pxRatio;
 }
 
+function unitText({ unit, over }: PlotSpec): string {
+  return over === undefined ? unit : `${unit} over ${over.label}`;
+}
+
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: PlotSpec['curves']): string {
   if (curves.length > kMostReadouts) return '';
@@ -65,7 +69,7 @@ export class Plot {
       'div',
       { class: `plot-title${crowding(curves)}`, title: spec.hint },
       h('b', {}, spec.label),
-      h('span', { class: 'unit' }, spec.unit),
+      h('span', { class: 'unit' }, unitText(spec)),
       h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);

@@ -1,36 +1,38 @@
-// The server's runs: searched, ordered, tagged, opened.
-import { textureHint } from '../../store/error_table';
-import { formatDate, formatDuration, formatNumber } from '../../store/format';
-import type { RunOrder } from '../../store/runs/run_order';
-import { bestFirst, isRunOrder, kRunOrders, ordered } from '../../store/runs/run_order';
-import { matching } from '../../store/runs/run_search';
-import type { EstimatorResult, Run } from '../../protocol/rest_types';
-import { isActive } from '../../protocol/rest_types';
-import type { Topic } from '../../store/state';
-import { failedEstimators } from '../../store/studies/study_form';
-import { h, rebuild } from '../dom';
-import { icon } from '../icons';
+// The server's runs: searched, filtered, ordered, tagged, opened.
+import { isRunOrder, kRunOrders, ordered } from '../../store/runs/run_order';
+import { filtered, isFiltering } from '../../store/runs/run_filter';
+import { kSearchFields, matching, searchFor } from '../../store/runs/run_search';
+import { runTraits } from '../../store/runs/run_traits';
+import type { Run } from '../../protocol/rest_types';
+import type { State, Topic } from '../../store/state';
+import { h, setText } from '../dom';
+import { KeyedList } from '../keyed_list';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
 import { notesForm } from './notes_form';
+import { RunEntries } from './run_entry';
+import { RunFilters } from './run_filters';
 import { ShownRuns } from './shown_runs';
 import type { Context, View } from '../view';
 
 const kConfirm_ms = 3000;
-/** Estimators whose results an entry shows. */
-const kShownResults = 3;
+/** Entries that are drawn at first, and as many more whenever the end of the list is seen. */
+const kStep = 50;
 
 export class RunList implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
   private readonly list = h('ul', { class: 'runs' });
+  private readonly entries: RunEntries;
+  private readonly drawn = new KeyedList(this.list);
+  private readonly filters = new RunFilters(() => this.drawFromStart());
   private readonly shown: ShownRuns;
   private readonly search = h('input', {
     type: 'search',
     id: 'run-search',
     placeholder: 'Search',
     'aria-label': 'Search the runs',
-    title: 'Words of title, id, scenario, estimators, status, outcome, tags or note',
+    title: `Words of title, id, flight, estimators, status, outcome, tags or note, or of one field: ${kSearchFields.map((field) => `${field}:`).join(' ')}`,
   });
   private readonly order = h(
     'select',
@@ -41,18 +43,44 @@ export class RunList implements View {
     },
     ...Object.entries(kRunOrders).map(([value, text]) => h('option', { value }, text)),
   );
-  private readonly find = h('div', { class: 'run-find' }, this.search, this.order);
+  private readonly find = h(
+    'div',
+    { class: 'run-find' },
+    this.search,
+    this.order,
+    this.filters.button,
+  );
+  private readonly count = h('span', { role: 'status' });
+  private readonly counted = h('div', { class: 'run-count' }, this.count, this.filters.clear);
+  private readonly more = h('button', {
+    class: 'secondary run-more',
+    onclick: () => this.drawMore(),
+  });
   /** Tags and note of the run that is being edited. */
   private readonly notes = h('div', { class: 'run-notes', hidden: true });
   /** The run whose deletion awaits confirmation. */
   private confirming: string | null = null;
+  /** Entries to be drawn. */
+  private most = kStep;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('runs', 'Runs');
     this.shown = new ShownRuns(context);
-    this.panel.body.append(this.shown.root, this.find, this.notes, this.list);
-    this.search.addEventListener('input', () => this.draw());
-    this.order.addEventListener('change', () => this.draw());
+    this.entries = new RunEntries(context, {
+      findTag: (tag) => {
+        this.search.value = searchFor('tag', tag);
+        this.drawFromStart();
+      },
+      editNotes: (run) => this.editNotes(run),
+      confirm: (id) => this.ask(id),
+    });
+    const found = [this.find, this.filters.root, this.counted, this.notes, this.list, this.more];
+    this.panel.body.append(this.shown.root, ...found);
+    this.search.addEventListener('input', () => this.drawFromStart());
+    this.order.addEventListener('change', () => this.drawFromStart());
+    new IntersectionObserver(([seen]) => {
+      if (seen?.isIntersecting === true) this.drawMore();
+    }).observe(this.more);
     this.root = this.panel.root;
   }
 
@@ -60,133 +88,64 @@ export class RunList implements View {
     if (changed.has('lists') || changed.has('run')) this.draw();
   }
 
+  private drawFromStart(): void {
+    this.most = kStep;
+    this.draw();
+  }
+
+  private drawMore(): void {
+    this.most += kStep;
+    this.draw();
+  }
+
   private draw(): void {
     const { state } = this.context.store;
-    const { runs, runId, listError } = state;
-    const found = ordered(matching(runs ?? [], this.search.value), this.chosenOrder());
-    const shown = state.watched.map(({ id }) => id);
-    rebuild(this.list, JSON.stringify([found, runId, shown, this.confirming]), () =>
-      found.map((run) => this.entry(run, run.id === runId)),
-    );
+    const { runs, listError } = state;
+    const all = runs ?? [];
+    this.filters.update(all);
+    const order = isRunOrder(this.order.value) ? this.order.value : 'newest';
+    const chosen = filtered(all, this.filters.filter);
+    const found = ordered(matching(chosen, this.search.value), order);
+    this.drawEntries(all, found, state);
     this.shown.draw(state);
-    this.find.hidden = (runs?.length ?? 0) < 2;
+    this.find.hidden = all.length < 2;
+    const some = found.length < all.length;
+    setText(this.count, some ? `${found.length} of ${all.length} runs` : '');
+    this.counted.hidden = !some;
     if (runs === null) this.panel.showEmpty(listError ?? 'Reading the runs');
     else if (runs.length === 0) this.panel.showEmpty('No runs yet. Launch a flight above.');
-    else this.panel.showEmpty(found.length === 0 ? 'No run has all of these words.' : null);
+    else this.panel.showEmpty(found.length === 0 ? this.nothingText() : null);
   }
 
-  private chosenOrder(): RunOrder {
-    return isRunOrder(this.order.value) ? this.order.value : 'newest';
-  }
-
-  private entry(run: Run, selected: boolean): HTMLElement {
-    const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
-    const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
-    const flight = run.flight === '' ? run.scenario : run.flight;
-    const detail = [
-      formatDate(run.created_utc),
-      length,
-      run.results.length > 0 ? resultsText(run) : run.estimators.join(', ') || 'no estimators',
-      progressText(run),
-    ].filter((part) => part !== '');
-    return h(
-      'li',
-      {
-        class: 'run',
-        'data-run': run.id,
-        'data-status': run.status,
-        'aria-current': selected ? 'true' : 'false',
-      },
-      h(
-        'button',
-        {
-          class: 'run-open',
-          title: run.error ?? run.problem ?? run.id,
-          onclick: () => this.context.session.selectRun(run.id),
-        },
-        h('span', { class: 'run-name' }, run.title || run.scenario),
-        h('span', { class: 'run-detail', 'data-role': 'flight', title: flight }, flight),
-        h(
-          'span',
-          { class: 'run-detail', 'data-role': 'detail', title: resultsHint(run) },
-          detail.join(' · '),
-        ),
-        isActive(run)
-          ? h(
-              'span',
-              { class: 'progress' },
-              h('i', { style: `width:${(share * 100).toFixed(1)}%` }),
-            )
-          : null,
-      ),
-      h('span', { class: 'run-chips' }, ...chips(run), ...this.marks(run)),
-      h(
-        'span',
-        { class: 'run-buttons' },
-        ...this.explainButton(run),
-        this.notesButton(run),
-        this.repeatButton(run),
-        this.compareButton(run),
-        isActive(run) ? this.cancelButton(run) : this.deleteButton(run),
-      ),
+  private drawEntries(all: readonly Run[], found: readonly Run[], state: State): void {
+    const { runId } = state;
+    // The run that is shown is marked in the list, wherever it is.
+    const current = found.findIndex(({ id }) => id === runId);
+    const most = Math.max(this.most, current + 1);
+    const watched = new Set(state.watched.map(({ id }) => id));
+    const traits = runTraits(all);
+    this.drawn.show(
+      found.slice(0, most).map((run) => {
+        const entry = {
+          traits: traits.get(run.id) ?? { differing: [], common: [] },
+          selected: run.id === runId,
+          shown: watched.has(run.id),
+          watched: watched.size,
+          confirming: this.confirming === run.id,
+        };
+        const key = JSON.stringify([run, entry]);
+        return { id: run.id, key, make: () => this.entries.entry(run, entry) };
+      }),
     );
+    const rest = found.length - most;
+    this.more.hidden = rest <= 0;
+    setText(this.more, `Show ${Math.min(kStep, rest)} more of ${found.length}`);
   }
 
-  /** Tags, which search for themselves, and whether there is a note. */
-  private marks(run: Run): HTMLElement[] {
-    const tags = run.tags.map((tag) =>
-      h(
-        'button',
-        {
-          class: 'chip small tag',
-          title: `Find the runs with "${tag}"`,
-          onclick: () => {
-            this.search.value = tag;
-            this.draw();
-          },
-        },
-        tag,
-      ),
-    );
-    const note =
-      run.note === ''
-        ? []
-        : [h('span', { class: 'chip small', 'data-role': 'note', title: run.note }, 'note')];
-    return [...tags, ...note];
-  }
-
-  /** Only where an estimator failed. */
-  private explainButton(run: Run): HTMLElement[] {
-    const failed = failedEstimators(run);
-    if (failed.length === 0) return [];
-    return [
-      h(
-        'button',
-        {
-          class: 'icon-button',
-          title: `Explain why ${failed.join(', ')} failed`,
-          'aria-label': `Explain the failure: ${run.title}`,
-          'data-role': 'explain',
-          onclick: () => void this.context.studies.explain(run),
-        },
-        icon('question'),
-      ),
-    ];
-  }
-
-  private notesButton(run: Run): HTMLElement {
-    return h(
-      'button',
-      {
-        class: 'icon-button',
-        title: isActive(run) ? 'Can be tagged once it has ended' : 'Tags and note',
-        'aria-label': `Tags and note: ${run.title}`,
-        'data-role': 'edit-notes',
-        disabled: isActive(run),
-        onclick: () => this.editNotes(run),
-      },
-      icon('pencil'),
-    );
+  private nothingText(): string {
+    return isFiltering(this.filters.filter)
+      ? 'No run has all of these words and passes the filter.'
+      : 'No run has all of these words.';
   }
 
   private editNotes(run: Run): void {
@@ -205,78 +164,6 @@ export class RunList implements View {
     this.notes.querySelector('input')?.focus();
   }
 
-  /** Without a run shown, there is nothing to compare with. */
-  private compareButton(run: Run): HTMLElement {
-    const { session, store } = this.context;
-    const { watched } = store.state;
-    const isShown = watched.some(({ id }) => id === run.id);
-    const label = isShown ? 'Remove from the comparison' : 'Show together with the others';
-    return h(
-      'button',
-      {
-        class: 'icon-button compare',
-        title: label,
-        'aria-label': `${label}: ${run.title}`,
-        'aria-pressed': isShown && watched.length > 1 ? 'true' : 'false',
-        disabled: watched.length === 0 || (isShown && watched.length === 1),
-        onclick: () => {
-          if (isShown) session.removeRun(run.id);
-          else session.addRun(run.id);
-        },
-      },
-      icon('add'),
-    );
-  }
-
-  private repeatButton(run: Run): HTMLElement {
-    const { catalogue, layouts } = this.context;
-    const again = async () => {
-      await catalogue.repeat(run);
-      layouts.show('launcher');
-    };
-    return h(
-      'button',
-      {
-        class: 'icon-button',
-        title: 'Fly again with changes: its settings are shown in Launch',
-        'aria-label': `Fly again with changes: ${run.title}`,
-        'data-role': 'repeat',
-        onclick: () => void again(),
-      },
-      icon('repeat'),
-    );
-  }
-
-  private cancelButton(run: Run): HTMLElement {
-    return h(
-      'button',
-      {
-        class: 'icon-button',
-        title: 'Stop this run; its data so far is kept',
-        'aria-label': 'Stop this run',
-        onclick: () => void this.context.catalogue.cancel(run.id),
-      },
-      icon('stop'),
-    );
-  }
-
-  private deleteButton(run: Run): HTMLElement {
-    const asked = this.confirming === run.id;
-    return h(
-      'button',
-      {
-        class: asked ? 'icon-button danger' : 'icon-button',
-        title: asked ? 'Click again to delete this run for good' : 'Delete this run',
-        'aria-label': asked ? 'Confirm deletion' : 'Delete this run',
-        onclick: () => {
-          if (asked) void this.context.catalogue.remove(run.id);
-          this.ask(asked ? null : run.id);
-        },
-      },
-      asked ? 'Delete?' : icon('bin'),
-    );
-  }
-
   private ask(id: string | null): void {
     this.confirming = id;
     this.draw();
@@ -285,65 +172,4 @@ export class RunList implements View {
       if (this.confirming === id) this.ask(null);
     }, kConfirm_ms);
   }
-}
-
-/** Place in the queue, or time left; '' if neither is known. */
-function progressText(run: Run): string {
-  if (run.queue_position !== null) {
-    return run.queue_position === 1 ? 'next' : `${run.queue_position - 1} before it`;
-  }
-  return run.left_s === null ? '' : `${formatDuration(run.left_s)} left`;
-}
-
-/** The best estimators with their errors. */
-function resultsText({ results }: Run): string {
-  const best = bestFirst(results);
-  const more = best.length > kShownResults ? [`${best.length - kShownResults} more`] : [];
-  return [...best.slice(0, kShownResults).map(resultText), ...more].join(' · ');
-}
-
-/** All of them, one a line; undefined before the run is scored. */
-function resultsHint({ results }: Run): string | undefined {
-  return results.length > 0 ? bestFirst(results).map(resultText).join('\n') : undefined;
-}
-
-/** So that an error has at least two figures. */
-function digitsOf(error_m: number): number {
-  if (error_m < 1) return 3;
-  return error_m < 10 ? 2 : 1;
-}
-
-/** "feature 0.083 m", "feature LOST 12.3 m". */
-function resultText({ estimator, outcome, position_rmse_m }: EstimatorResult): string {
-  const word = outcome === 'COMPLETED' ? [] : [outcome];
-  const error =
-    position_rmse_m === null
-      ? []
-      : [`${formatNumber(position_rmse_m, digitsOf(position_rmse_m))} m`];
-  return [estimator, ...word, ...error].join(' ');
-}
-
-/** Status, and what is wrong with the run. */
-function chips(run: Run): HTMLElement[] {
-  return [
-    h('span', { class: 'chip small', 'data-status': run.status }, run.status),
-    run.problem !== null
-      ? h(
-          'span',
-          { class: 'chip small warn', 'data-role': 'problem', title: run.problem },
-          'damaged',
-        )
-      : null,
-    run.texture_limited
-      ? h(
-          'span',
-          {
-            class: 'chip small texture-limited',
-            'data-role': 'texture-limited',
-            title: textureHint(null),
-          },
-          'texture-limited',
-        )
-      : null,
-  ].filter((chip) => chip !== null);
 }

@@ -44,7 +44,8 @@ export class ScoreChoices {
         'button',
         {
           class: 'secondary',
-          title: 'TUM, KITTI or EuRoC; files can be dropped here, too',
+          title:
+            'Trajectories (TUM, KITTI together with its times.txt, EuRoC) and flight logs; they can be dropped here, too',
           onclick: () => this.file.click(),
         },
         'Upload files',

@@ -28,13 +28,19 @@ beforeEach(() => {
       return Promise.resolve(Response.json({ trajectories, complete: true }));
     }
     if (url === 'api/logs') {
-      return Promise.resolve(Response.json({ logs: [{ name: 'd/f.bin' }], complete: true }));
+      return Promise.resolve(
+        Response.json({
+          logs: [{ name: 'd/f.bin', format: 'DataFlash', uploaded: true }],
+          complete: true,
+        }),
+      );
     }
     return Promise.resolve(Response.json(evaluation));
   });
   desk = new ScoreDesk(store, rest, (url) => {
     asked.push({ url, body: 'file' });
-    const text = JSON.stringify({ name: 'file:uploads/e.txt' });
+    const name = url.startsWith('api/logs') ? 'uploads/f.bin' : 'file:uploads/e.txt';
+    const text = JSON.stringify({ name });
     return Promise.resolve({ status: 201, text });
   });
 });
@@ -86,8 +92,24 @@ describe('ScoreDesk', () => {
 
   it('takes uploads: the first becomes the truth', async () => {
     await desk.send([new File(['0 0 0 0 0 0 0 1'], 'e 1.txt')]);
-    expect(asked[0]?.url).toBe('api/trajectories?name=e%201.txt');
+    expect(asked[0]?.url).toBe('api/trajectories?name=e_1.txt');
     expect(store.state.scorePage).toMatchObject({ truth: 'file:uploads/e.txt', upload: null });
+  });
+
+  it('takes flight logs, whose trajectory is scored like a file', async () => {
+    await desk.chooseTruth('file:d/t.tum');
+    await desk.send([new File(['x'], 'f 1.bin')]);
+    expect(asked.map(({ url }) => url)).toContain('api/logs?name=f_1.bin');
+    expect(store.state.scorePage.estimates).toEqual(['log:uploads/f.bin']);
+    await desk.remove('log:uploads/f.bin');
+    expect(asked.map(({ url }) => url)).toContain('api/logs/uploads%2Ff.bin');
+    expect(store.state.scorePage.estimates).toEqual([]);
+  });
+
+  it('names the file that cannot be uploaded', async () => {
+    await desk.send([new File(['0\n1\n'], 'times.txt')]);
+    expect(store.state.scorePage.error).toMatch(/^times\.txt: choose the KITTI poses/);
+    expect(asked).toEqual([]);
   });
 
   it('says why nothing could be scored', async () => {

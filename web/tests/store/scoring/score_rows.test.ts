@@ -6,7 +6,13 @@ import {
   scoreAlignments,
   scoreRows,
 } from '../../../src/store/scoring/score_rows';
-import { scoreSpan, scoreSpecs } from '../../../src/store/scoring/score_specs';
+import {
+  groupSpan,
+  pathMarks,
+  scorePaths,
+  scoreSpan,
+  scoreSpecs,
+} from '../../../src/store/scoring/score_specs';
 
 const table = (columns: Record<string, (number | null)[]>) => ({ t_s: [1000, 1001], ...columns });
 const poses = {
@@ -43,7 +49,12 @@ describe('scoreRows', () => {
       ['init_scale', false],
       ['', true],
     ]);
-    expect(rows[0]?.values.slice(0, 3)).toEqual([0.1234567890123, 0.1, null]);
+    expect(rows[0]?.cells.slice(0, 4).map(({ text }) => text)).toEqual([
+      '2.0000',
+      '0.123',
+      '0.100',
+      '–',
+    ]);
     expect(rows[1]?.hints).toEqual(['1 pose was left out', 'a straight line']);
     expect(rows[2]?.hints).toEqual(['line 3 is no pose']);
     expect(scoreAlignments(evaluation)).toEqual(['init_scale', 'sim3']);
@@ -79,16 +90,16 @@ describe('offsetTexts', () => {
 describe('exportScores', () => {
   it('writes every digit as CSV', () => {
     const lines = exportScores(evaluation, 'CSV').split('\n');
-    expect(lines[1]).toBe(
-      'file:d/t.tum,file:d/e.tum,sim3,0.1234567890123,0.1,,,,2,,,,,,,,,,,,,,,,',
-    );
+    expect(lines[1]).toMatch(/^file:d\/t\.tum,file:d\/e\.tum,sim3,2,0\.1234567890123,0\.1,,/);
+    const widths = lines.slice(0, 4).map((line) => line.split(',').length);
+    expect(new Set(widths).size).toBe(1);
   });
 
   it('writes what is shown as Markdown and LaTeX', () => {
     expect(exportScores(evaluation, 'Markdown')).toContain(
-      '| d/e.tum | sim3 | 0.123 | 0.100 | – |',
+      '| d/e.tum | sim3 | 2.0000 | 0.123 | 0.100 | – |',
     );
-    expect(exportScores(evaluation, 'LaTeX')).toContain('d/e.tum & init\\_scale & 3.000');
+    expect(exportScores(evaluation, 'LaTeX')).toContain('d/e.tum & init\\_scale & -- & 3.000');
   });
 });
 
@@ -113,5 +124,39 @@ describe('scoreSpecs', () => {
     const values = specs[0]?.curves[0]?.curve()?.values;
     expect([...(values as Float64Array)]).toEqual([0.5, NaN]);
     expect(scoreSpecs(evaluation, 'init_scale', 'errors')[0]?.curves).toEqual([]);
+  });
+
+  it('plots the drift over the length of the sub-path', () => {
+    const [first] = evaluation.estimates;
+    const relative = [
+      { length_m: 100, pairs: 9, translation_percent: 1.25, rotation_deg_per_100m: 0.5 },
+      { length_m: 200, pairs: 4, translation_percent: 1, rotation_deg_per_100m: 0.1 },
+    ];
+    const estimates = [{ name: 'e', ...first, alignments: { sim3: { relative } } }];
+    const specs = scoreSpecs({ ...evaluation, estimates }, 'sim3', 'drift');
+    expect(specs.map(({ unit, over }) => [unit, over?.label])).toEqual([
+      ['%', 'sub-path [m]'],
+      ['deg/100 m', 'sub-path [m]'],
+    ]);
+    const curve = specs[1]?.curves[0]?.curve();
+    expect([...(curve?.t as Float64Array)]).toEqual([100, 200]);
+    expect([...(curve?.values as Float64Array)]).toEqual([0.5, 0.1]);
+    expect(groupSpan(evaluation, specs)).toEqual([0, 210]);
+    expect(groupSpan(evaluation, scoreSpecs(evaluation, 'sim3', 'errors'))).toEqual([0, 1]);
+    expect(scoreSpecs(evaluation, 'sim3', 'drift')).toEqual([]);
+  });
+});
+
+describe('scorePaths', () => {
+  it('has the tracks of the truth and the estimates, with a mark at a time', () => {
+    const paths = scorePaths(evaluation, 'sim3', 'x_m', 'z_m');
+    expect(paths.map(({ hue }) => hue.kind)).toEqual(['truth', 'estimate']);
+    expect([...(paths[0]?.y as Float64Array)]).toEqual([5, 5]);
+    expect(pathMarks(paths, 0.5).map(({ x, y }) => [x, y])).toEqual([
+      [0, 5],
+      [0, 5],
+    ]);
+    expect(pathMarks(paths, 1).map(({ x }) => x)).toEqual([1, 1]);
+    expect(pathMarks(paths, -1)).toEqual([]);
   });
 });

@@ -1,0 +1,40 @@
+// A list whose entries are kept as long as they show the same: a change of one of a thousand makes
+// one element, and does not take the focus from the others.
+
+export interface KeyedEntry {
+  id: string;
+  /** Differs if the entry must be made again. */
+  key: string;
+  make: () => HTMLElement;
+}
+
+export class KeyedList {
+  private readonly made = new Map<string, { key: string; element: HTMLElement }>();
+
+  constructor(private readonly root: HTMLElement) {}
+
+  show(entries: readonly KeyedEntry[]): void {
+    const wanted = new Set(entries.map(({ id }) => id));
+    for (const [id, { element }] of this.made) {
+      if (wanted.has(id)) continue;
+      element.remove();
+      this.made.delete(id);
+    }
+    let place = this.root.firstElementChild;
+    for (const { id, key, make } of entries) {
+      const before = this.made.get(id);
+      let element = before?.element;
+      if (element === undefined || before?.key !== key) {
+        const next = make();
+        if (element !== undefined) {
+          if (place === element) place = next;
+          element.replaceWith(next);
+        }
+        element = next;
+        this.made.set(id, { key, element });
+      }
+      if (place === element) place = place.nextElementSibling;
+      else this.root.insertBefore(element, place);
+    }
+  }
+}

@@ -1,0 +1,173 @@
+// The plots of scored trajectories, in groups of which one is shown.
+import type { Evaluation } from '../../protocol/score_types';
+import type { Path } from '../../store/plots/path_frame';
+import type { PlotSpec } from '../../store/plots/plot_specs';
+import type { ScoreGroup } from '../../store/scoring/score_specs';
+import { groupSpan, pathMarks, scorePaths, scoreSpecs } from '../../store/scoring/score_specs';
+import type { Span } from '../../store/time_window';
+import { zoomed } from '../../store/time_window';
+import { h, rebuild } from '../dom';
+import type { PathAxes } from '../plots/path_plot';
+import { kPathAxes, PathPlot } from '../plots/path_plot';
+import type { PlotActions } from '../plots/plot';
+import { Plot } from '../plots/plot';
+import { plotFilesMenu } from '../plots/plot_files';
+import type { Context } from '../view';
+
+const kGroups: readonly { name: ScoreGroup; label: string; hint: string; columns: number }[] = [
+  { name: 'pose', label: 'Pose', hint: 'Positions and attitudes over time', columns: 3 },
+  { name: 'path', label: 'Path', hint: 'The tracks from above and from the side', columns: 2 },
+  { name: 'errors', label: 'Errors', hint: 'Errors over time', columns: 3 },
+  { name: 'drift', label: 'Drift', hint: 'Relative errors by the length of the path', columns: 2 },
+];
+
+export class ScorePlots {
+  readonly root = h('div', { class: 'plot-grid' });
+  readonly tabs = h('span', { class: 'tabs' });
+  readonly files: HTMLSelectElement;
+  private group: ScoreGroup = 'errors';
+  private plots: Plot[] = [];
+  private readonly paths: readonly { plot: PathPlot; axes: PathAxes; tracks: Path[] }[];
+  private drawn: { series: Evaluation | null; group: ScoreGroup } = { series: null, group: 'pose' };
+  /** null = everything. */
+  private window: Span | null = null;
+
+  constructor(private readonly context: Context) {
+    this.files = plotFilesMenu(
+      () => this.shown(),
+      (text) => context.notices.error(text),
+    );
+    this.paths = kPathAxes.map((axes) => ({
+      plot: new PathPlot(axes, (t_s) => this.moveMarks(t_s)),
+      axes,
+      tracks: [],
+    }));
+    new ResizeObserver(() => this.draw()).observe(this.root);
+    this.drawTabs();
+  }
+
+  draw(): void {
+    const { series } = this.scored();
+    const { drawn, group } = this;
+    if (drawn.series !== series || drawn.group !== group) {
+      const other = drawn.series?.truth.name !== series?.truth.name || drawn.group !== group;
+      if (other) this.window = null;
+      this.drawn = { series, group };
+      this.build();
+    }
+    const span = this.span();
+    for (const plot of this.plots) plot.draw(span);
+  }
+
+  repaint(): void {
+    for (const plot of this.plots) plot.repaint();
+    for (const { plot } of this.paths) plot.repaint();
+  }
+
+  /** Why there is no plot although there are scores; '' if there is. */
+  emptyText(): string {
+    if (this.group !== 'drift' || this.specs().length > 0) return '';
+    return 'No trajectory has a scored path of 100 m.';
+  }
+
+  private scored(): { series: Evaluation | null; mode: string } {
+    const { series } = this.context.store.state.scorePage;
+    const [mode] = Object.keys(series?.estimates.find((one) => one.series)?.series ?? {});
+    return { series: mode === undefined ? null : series, mode: mode ?? '' };
+  }
+
+  private specs(): PlotSpec[] {
+    const { series, mode } = this.scored();
+    return series === null ? [] : scoreSpecs(series, mode, this.group);
+  }
+
+  private whole(): Span {
+    const { series } = this.scored();
+    return series === null ? [0, 1] : groupSpan(series, this.specs());
+  }
+
+  private span(): Span {
+    return this.window ?? this.whole();
+  }
+
+  private shown() {
+    const specs = this.specs();
+    if (specs.length === 0) return null;
+    const { group } = this;
+    return { group: `scores-${group}`, specs, span_s: this.span(), columns: this.columns() };
+  }
+
+  private columns(): number {
+    return kGroups.find(({ name }) => name === this.group)?.columns ?? 1;
+  }
+
+  private build(): void {
+    for (const plot of this.plots) plot.destroy();
+    const moveTo = (t_s: number | null) => {
+      for (const plot of this.plots) {
+        plot.moveCursor(t_s);
+        plot.showCursor(t_s);
+      }
+    };
+    const actions: PlotActions = {
+      onSeek: moveTo,
+      onHover: moveTo,
+      onZoom: (centre, factor) => this.zoom(centre, factor),
+    };
+    const specs = this.specs();
+    const columns = this.columns();
+    this.files.hidden = this.group === 'path';
+    this.plots = specs.map(
+      (spec, i) =>
+        new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
+    );
+    if (this.group === 'path') this.takePaths();
+    this.root.style.setProperty('--columns', String(columns));
+    this.root.dataset['group'] = this.group;
+    this.root.dataset['alignment'] = this.scored().mode;
+    const parts = this.group === 'path' ? this.paths.map(({ plot }) => plot) : this.plots;
+    this.root.replaceChildren(...parts.map(({ root }) => root));
+  }
+
+  private takePaths(): void {
+    const { series, mode } = this.scored();
+    for (const path of this.paths) {
+      const { across, up } = path.axes;
+      path.tracks = series === null ? [] : scorePaths(series, mode, across, up);
+      path.plot.show(path.tracks, []);
+    }
+  }
+
+  /** Shows on both views where the tracks are. */
+  private moveMarks(t_s: number): void {
+    for (const { plot, tracks } of this.paths) plot.show(tracks, pathMarks(tracks, t_s));
+  }
+
+  private zoom(centre: number, factor: number): void {
+    const whole = this.whole();
+    this.window = factor === 0 ? null : zoomed(this.window ?? whole, whole, centre, factor);
+    this.draw();
+  }
+
+  private drawTabs(): void {
+    rebuild(this.tabs, this.group, () =>
+      kGroups.map(({ name, label, hint }) =>
+        h(
+          'button',
+          {
+            class: 'tab',
+            title: hint,
+            'data-score-group': name,
+            'aria-pressed': name === this.group ? 'true' : 'false',
+            onclick: () => {
+              this.group = name;
+              this.drawTabs();
+              this.context.store.change('scoring');
+            },
+          },
+          label,
+        ),
+      ),
+    );
+  }
+}
