@@ -6,18 +6,16 @@
 #include <iterator>
 #include <utility>
 
+#include "evaluation/scale_drift.hpp"
 #include "server/timeline/count_frames.hpp"
 
 namespace overfly::server {
 namespace {
 
-struct Places {
-  int map_id = 0;
-  Eigen::Vector3d truth_world_m;
-  Eigen::Vector3d estimate_world_m;
-};
+using evaluation::kMaxScalePlaces;
+using evaluation::ScalePlace;
 
-/// The rows before `first_frame`, at most kMaxScaleRows.
+/// The rows before `first_frame`, at most kMaxScalePlaces.
 std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
                                      std::size_t estimator,
                                      std::int64_t first_frame) {
@@ -25,7 +23,7 @@ std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
     const auto row = timeline.estimates(estimator, i, 1);
     return !row.empty() && row.front().sample.frame < first_frame;
   });
-  const std::size_t count = std::min(end, kMaxScaleRows);
+  const std::size_t count = std::min(end, kMaxScalePlaces);
   return timeline.estimates(estimator, end - count, count);
 }
 
@@ -40,10 +38,10 @@ std::vector<FrameRow> frames_between(const RunTimeline& timeline,
   return timeline.frames(begin, end - std::min(begin, end), camera);
 }
 
-std::vector<std::optional<Places>> places_of(const std::vector<EstimateRow>& rows,
-                                             const std::vector<FrameRow>& frames,
-                                             const RowAlignment& alignment) {
-  std::vector<std::optional<Places>> places(rows.size());
+std::vector<std::optional<ScalePlace>> places_of(const std::vector<EstimateRow>& rows,
+                                                 const std::vector<FrameRow>& frames,
+                                                 const RowAlignment& alignment) {
+  std::vector<std::optional<ScalePlace>> places(rows.size());
   auto frame = frames.begin();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const EstimateSample& sample = rows[i].sample;
@@ -54,20 +52,6 @@ std::vector<std::optional<Places>> places_of(const std::vector<EstimateRow>& row
     }
   }
   return places;
-}
-
-std::optional<double> scale_error_at(const std::vector<std::optional<Places>>& places,
-                                     std::size_t at) {
-  const Places& now = *places[at];
-  for (std::size_t back = 1; back <= std::min(at, kMaxScaleRows); ++back) {
-    const std::optional<Places>& then = places[at - back];
-    if (!then) continue;
-    if (then->map_id != now.map_id) return std::nullopt;
-    const double true_m = (now.truth_world_m - then->truth_world_m).norm();
-    if (true_m < kScaleWindow_m) continue;
-    return (now.estimate_world_m - then->estimate_world_m).norm() / true_m - 1.0;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -85,9 +69,9 @@ std::vector<std::optional<double>> scale_errors_of(const RunTimeline& timeline,
                                                       camera_of_estimator(timeline, estimator),
                                                       all.front().sample.frame,
                                                       all.back().sample.frame);
-  const std::vector<std::optional<Places>> places = places_of(all, frames, alignment);
+  const std::vector<std::optional<ScalePlace>> places = places_of(all, frames, alignment);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (places[earlier + i]) errors[i] = scale_error_at(places, earlier + i);
+    if (places[earlier + i]) errors[i] = evaluation::scale_error_at(places, earlier + i);
   }
   return errors;
 }

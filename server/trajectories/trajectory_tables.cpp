@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/measure/bounded_series.hpp"
 #include "core/time.hpp"
+#include "evaluation/scale_drift.hpp"
 
 namespace overfly::server {
 namespace {
@@ -89,9 +91,17 @@ Json error_tables(const FileScore& score,
   PoseTables poses(T_body_pose, points);
   BoundedSeries by_axis = series_of(3, points);
   BoundedSeries sizes = series_of(rotations ? 2 : 1, points);
+  BoundedSeries scale = series_of(1, points);
+  std::vector<std::optional<evaluation::ScalePlace>> places;
   for (std::size_t i = 0; i < score.matches.size(); ++i) {
     const std::int64_t t_ns = score.matches[i].t_ns;
-    poses.add(t_ns, alignment.S_world_vo * score.matches[i].T_vo_camera);
+    const Pose T_world_pose = alignment.S_world_vo * score.matches[i].T_vo_camera;
+    poses.add(t_ns, T_world_pose);
+    places.push_back(evaluation::ScalePlace{
+        0, score.matches[i].T_world_camera.translation, T_world_pose.translation});
+    if (const auto error = evaluation::scale_error_at(places, i)) {
+      add_if_finite(scale, {t_ns, {100.0 * *error, 0.0, 0.0}});
+    }
     add_if_finite(by_axis, {t_ns, {axes[i].along_m, axes[i].across_m, axes[i].up_m}});
     add_if_finite(sizes,
                   {t_ns,
@@ -103,6 +113,7 @@ Json error_tables(const FileScore& score,
   tables["axis_errors"] = columns_of_series(by_axis, {"along_m", "across_m", "up_m"});
   tables["errors"] = rotations ? columns_of_series(sizes, {"position_m", "rotation_deg"})
                                : columns_of_series(sizes, {"position_m"});
+  tables["scale"] = columns_of_series(scale, {"scale_percent"});
   return tables;
 }
 

@@ -232,6 +232,29 @@ TEST_F(TrajectoryRoutesTest, ScoresEqualThoseOfTheEvaluation) {
       const json& by_axis = entry.at("series").at(name).at("axis_errors");
       EXPECT_EQ(by_axis.at("along_m").at(i), axes[i].along_m);
     }
+    // The scale over the last 100 m, wherever the truth was so far away before.
+    const json& scale = entry.at("series").at(name).at("scale");
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < 800; ++i) {
+      const auto apart = [&](std::size_t j) {
+        const Eigen::Vector3d way =
+            (*matches)[i].T_world_camera.translation - (*matches)[j].T_world_camera.translation;
+        return way.norm();
+      };
+      std::size_t then = i;
+      while (then > 0 && apart(then) < 100.0) --then;
+      if (apart(then) < 100.0) continue;
+      const Eigen::Vector3d way =
+          (*matches)[i].T_vo_camera.translation - (*matches)[then].T_vo_camera.translation;
+      const double expected_percent =
+          100.0 * (expected.S_world_vo.scale * way.norm() / apart(then) - 1.0);
+      ASSERT_LT(row, scale.at("t_s").size());
+      EXPECT_EQ(scale.at("t_s").at(row), s_from_ns(score.matched_t_ns[i]));
+      EXPECT_NEAR(scale.at("scale_percent").at(row).get<double>(), expected_percent, 1e-6);
+      ++row;
+    }
+    EXPECT_EQ(scale.at("t_s").size(), row);
+    EXPECT_GT(row, 100U);
   }
 }
 

@@ -17,6 +17,7 @@ const kErrors = [
   { table: 'axis_errors', column: 'across_m', label: 'Error to the right', unit: 'm' },
   { table: 'axis_errors', column: 'up_m', label: 'Error up', unit: 'm' },
   { table: 'errors', column: 'rotation_deg', label: 'Rotation error', unit: 'deg' },
+  { table: 'scale', column: 'scale_percent', label: 'Scale error over the last 100 m', unit: '%' },
 ] as const;
 
 const kDrifts = [
@@ -62,15 +63,20 @@ export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGro
       return plot(axis, kAxisLabels[axis], angle ? 'deg' : 'm', angle ? 2 : 1, [first, ...curves]);
     });
   }
-  return kErrors.map(({ table, column, label, unit }) =>
-    plot(
-      column,
-      label,
-      unit,
-      3,
-      own.map(({ name, tables, hue }) => spec(name, hue, tables[table], column, begin_s)),
-    ),
-  );
+  // Short flights have no scale over 100 m.
+  const hasValues = (table: 'errors' | 'axis_errors' | 'scale') =>
+    table !== 'scale' || own.some(({ tables }) => (tables.scale.t_s ?? []).length > 0);
+  return kErrors
+    .filter(({ table }) => hasValues(table))
+    .map(({ table, column, label, unit }) =>
+      plot(
+        column,
+        label,
+        unit,
+        3,
+        own.map(({ name, tables, hue }) => spec(name, hue, tables[table], column, begin_s)),
+      ),
+    );
 }
 
 /** Errors by the length of the sub-path (relative pose error, as of KITTI). */

@@ -45,7 +45,7 @@ export class ScoreChoices {
         {
           class: 'secondary',
           title:
-            'Trajectories (TUM, KITTI together with its times.txt, EuRoC) and flight logs; they can be dropped here, too',
+            'Trajectories (TUM, KITTI together with its times.txt, EuRoC, CSV) and flight logs; they can be dropped here, too',
           onclick: () => this.file.click(),
         },
         'Upload files',
