@@ -122,13 +122,17 @@ async function open(hash, theme = 'dark') {
   await page.locator('.panel[data-frame], [data-panel][data-frame]').first().waitFor();
   await stage.dashboard.until((t_s) => {
     const { frame, tNs } = document.querySelector('[data-panel=timeline]').dataset;
-    const panels = [...document.querySelectorAll('[data-panel][data-frame]')];
+    const names = ['scene', 'camera', 'depth', 'image-error', 'plots'];
+    const panels = names
+      .map((name) => document.querySelector(`[data-panel="${name}"]`))
+      .filter((panel) => panel?.checkVisibility());
     return (
       Math.abs(Number(tNs) / 1e9 - t_s) < 0.1 &&
-      panels.some(({ dataset }) => dataset.frame === frame)
+      panels.length > 0 &&
+      panels.every(({ dataset }) => dataset.frame === frame)
     );
   }, kInstant_s);
-  // Pictures of the last panels, and plots, which are drawn at most 15 times a second.
+  // Pictures of other runs and in full quality, and plots, which are drawn at most 15 times a second.
   await page.waitForTimeout(2000);
 }
 
