@@ -35,6 +35,7 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
   async function typeFaults(text) {
     await dashboard.page.locator('[data-role=edit-json]').click();
     await dashboard.page.locator('[data-section=faults]').click();
+    await dashboard.page.locator('[data-role=as-json]').click();
     await dashboard.page.getByLabel('Section as JSON').fill(text);
   }
 
@@ -48,7 +49,7 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
 
   step('flies what was typed', async () => {
     await typeFaults(JSON.stringify(kFaults));
-    await dashboard.until(() => document.querySelector('.editor-errors').textContent === '');
+    await dashboard.page.locator('[data-check=done]').waitFor();
     await dashboard.page.getByRole('button', { name: 'Done' }).click();
     await dashboard.field('duration_s').fill(String(kFlight_s));
     run = await dashboard.launch();

@@ -60,6 +60,8 @@ describe('the sensors of a flight', { skip, timeout: 600_000 }, () => {
 
   step('are plotted while it is flown', async () => {
     await dashboard.page.locator('[data-role=edit-json]').click();
+    await dashboard.page.locator('[data-section=sensors]').click();
+    await dashboard.page.locator('[data-role=as-json]').click();
     await typeSection('sensors', kSensors);
     await typeSection('faults', kFaults);
     await dashboard.page.getByRole('button', { name: 'Done' }).click();

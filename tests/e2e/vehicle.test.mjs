@@ -2,23 +2,15 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import net from 'node:net';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
 import { programFile, serverMissing, sourceFile } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
+import { freePort } from './support/vehicle.mjs';
 
 const kFlightPatience_ms = 300_000;
-
-async function freePort() {
-  const server = net.createServer();
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  const { port } = server.address();
-  await new Promise((resolve) => server.close(resolve));
-  return port;
-}
 
 let dashboard;
 const step = makeStep(() => dashboard);

@@ -12,6 +12,7 @@ import './styles/errors.css';
 import './styles/plots.css';
 import './styles/plot3d.css';
 import './styles/side.css';
+import './styles/scenario.css';
 import './styles/timeline.css';
 import './styles/estimators.css';
 import './styles/logs.css';
@@ -47,6 +48,7 @@ import { MissionDesk } from './store/missions/mission_desk';
 import { Notices } from './store/notices';
 import { parsePermalink } from './store/permalink';
 import { Player } from './store/player';
+import { ScenarioDesk } from './store/scenario/scenario_desk';
 import { lookFrom, showText, viewText } from './store/scene/scene_look';
 import { SceneControl } from './store/scene/scene_control';
 import { ReportMaker } from './store/runs/report_maker';
@@ -99,6 +101,7 @@ session.use(client);
 const player = new Player(store, session);
 const scene = new SceneControl(store, client);
 const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
+const scenarios = new ScenarioDesk(store, rest, catalogue, notices, later);
 
 const alignment = new Alignment(store, rest, session, notices);
 const cameras = new Cameras(store, rest);
@@ -136,6 +139,7 @@ const context = {
   player,
   scene,
   catalogue,
+  scenarios,
   alignment,
   cameras,
   probe,

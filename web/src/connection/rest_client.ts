@@ -80,6 +80,19 @@ export class RestClient {
     return (await this.call('GET', '/scenario-schema')) as JsonObject;
   }
 
+  /** What a run of the document would be refused for. */
+  async checkScenario(document: JsonObject, signal: AbortSignal): Promise<FieldError[]> {
+    const answer = await this.call('POST', '/scenario-check', { document }, {}, signal);
+    const { valid, message, faults } = answer as {
+      valid: boolean;
+      message: string;
+      faults: unknown;
+    };
+    if (valid) return [];
+    const errors = readFieldErrors(faults);
+    return errors.length > 0 ? errors : [{ field: '', message }];
+  }
+
   /** Saves a scenario of the viewer. */
   async saveScenario(name: string, document: JsonObject, replace: boolean): Promise<void> {
     const query = replace ? '?replace=true' : '';

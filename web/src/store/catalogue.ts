@@ -1,11 +1,11 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { fieldErrorsOf } from '../connection/rest_client';
-import type { Json, JsonObject, Run } from '../protocol/rest_types';
+import type { JsonObject, Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
-import { overridesOf, withOverrides } from './launch_form';
 import type { Notices } from './notices';
-import { sectionErrors, sectionOverrides } from './scenario_schema';
+import { draftOf, overridesBetween } from './scenario/draft';
+import { documentErrors } from './scenario/schema_check';
 import type { Session } from './session';
 import type { Store } from './state';
 import type { StudyScenario } from './studies/study_form';
@@ -58,25 +58,12 @@ export class Catalogue {
     if (state.scenarioName === null && first !== undefined) await this.selectScenario(first.name);
   }
 
-  /** Opens the editor of the scenario's sections. */
-  async openEditor(): Promise<void> {
-    const { state } = this.store;
-    try {
-      state.scenarioSchema ??= await this.rest.scenarioSchema();
-      state.editorOpen = true;
-    } catch (error) {
-      this.notices.error(textOf(error));
-    }
-    this.store.change('launch', 'help');
-  }
-
   async selectScenario(name: string): Promise<void> {
     const { state } = this.store;
     state.scenarioName = name;
     state.repeatedRun = null;
     state.scenarioDocument = null;
-    state.scenarioEdits = new Map();
-    state.launchErrors = [];
+    this.forgetChanges();
     this.store.change('launch');
     const entry = state.scenarios?.find((scenario) => scenario.name === name);
     if (entry !== undefined && entry.error !== null) {
@@ -110,72 +97,80 @@ export class Catalogue {
     }
     state.repeatedRun = run;
     state.scenarioDocument = document;
-    state.scenarioEdits = new Map();
-    state.launchErrors = [];
+    this.forgetChanges();
     this.store.change('launch');
   }
 
-  /** Starts a run with the form's values and watches it; invalid fields are shown in the form. */
-  async launch(texts: ReadonlyMap<string, string>): Promise<void> {
+  private forgetChanges(): void {
     const { state } = this.store;
-    const { scenarioDocument } = state;
-    if (state.launching) return;
-    const overrides = this.checkedOverrides(texts);
-    if (overrides === null || scenarioDocument === null) return;
+    state.scenarioEdits = new Map();
+    state.launchErrors = [];
+    state.scenarioEditor.check = 'none';
+  }
+
+  /** Starts a run of the changed scenario and watches it. @return whether it was started */
+  async launch(): Promise<boolean> {
+    const { state } = this.store;
+    const document = this.checkedDocument();
+    if (state.launching || document === null) return false;
     state.launching = true;
+    this.store.change('launch');
+    let started = false;
     try {
-      const run = await this.fly(scenarioDocument, overrides);
+      const run = await this.fly(document);
       state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
       this.session.selectRun(run.id);
+      started = true;
     } catch (error) {
       state.launchErrors = fieldErrorsOf(error);
     }
     state.launching = false;
     this.store.change('launch', 'lists');
+    return started;
   }
 
-  /** What the form asks for, for a study; null, with errors in the form, if it is at fault. */
-  asked(texts: ReadonlyMap<string, string>): StudyScenario | null {
-    const overrides = this.checkedOverrides(texts);
-    return overrides === null ? null : this.withChanges(overrides);
+  /** The changed scenario, for a study; null, with its errors shown, if it is at fault. */
+  asked(): StudyScenario | null {
+    return this.checkedDocument() === null ? null : this.chosen();
   }
 
-  /** The form's scenario with the changes of its sections only; null before it is read. */
+  /** The changed scenario, for a study; null before it is read. */
   chosen(): StudyScenario | null {
-    const { scenarioDocument, scenarioEdits } = this.store.state;
-    return scenarioDocument === null ? null : this.withChanges(sectionOverrides(scenarioEdits));
-  }
-
-  private withChanges(overrides: Record<string, Json>): StudyScenario {
-    const { repeatedRun, scenarioDocument, scenarioName, scenarios } = this.store.state;
-    if (repeatedRun !== null) {
-      const title = `Again: ${repeatedRun.title || repeatedRun.scenario}`;
-      return { scenario: '', overrides, document: scenarioDocument, title };
-    }
+    const { repeatedRun, scenarioDocument, scenarioEdits, scenarioName, scenarios } =
+      this.store.state;
+    if (scenarioDocument === null) return null;
+    const { document } = draftOf(scenarioDocument, scenarioEdits);
+    const overrides = overridesBetween(scenarioDocument, document);
     const entry = scenarios?.find(({ name }) => name === scenarioName);
     const scenario = scenarioName ?? '';
-    return { scenario, overrides, document: null, title: entry?.title ?? scenario };
+    if (repeatedRun === null && overrides !== null) {
+      return { scenario, overrides, document: null, title: entry?.title ?? scenario };
+    }
+    const title =
+      repeatedRun === null
+        ? (entry?.title ?? scenario)
+        : `Again: ${repeatedRun.title || repeatedRun.scenario}`;
+    return { scenario: '', overrides: {}, document, title };
   }
 
-  /** Checks the form. @return what differs from the scenario; null, with errors, if it is at fault */
-  private checkedOverrides(texts: ReadonlyMap<string, string>): Record<string, Json> | null {
+  /** The changed scenario; null, with its errors shown, if it is at fault. */
+  private checkedDocument(): JsonObject | null {
     const { state } = this.store;
     const { scenarioDocument, scenarioEdits, scenarioSchema } = state;
     if (scenarioDocument === null) return null;
-    const { overrides, errors } = overridesOf(scenarioDocument, texts);
-    for (const [section, text] of scenarioEdits) {
-      errors.push(...sectionErrors(scenarioSchema ?? {}, section, text));
-    }
+    const { document, errors } = draftOf(scenarioDocument, scenarioEdits);
+    if (scenarioSchema !== null) errors.push(...documentErrors(scenarioSchema, document));
     state.launchErrors = errors;
     this.store.change('launch');
-    return errors.length > 0 ? null : { ...sectionOverrides(scenarioEdits), ...overrides };
+    return errors.length > 0 ? null : document;
   }
 
-  private fly(document: JsonObject, overrides: Record<string, Json>): Promise<Run> {
-    const { repeatedRun, scenarioName } = this.store.state;
-    return repeatedRun === null
+  private fly(document: JsonObject): Promise<Run> {
+    const { repeatedRun, scenarioDocument, scenarioName } = this.store.state;
+    const overrides = overridesBetween(scenarioDocument ?? {}, document);
+    return repeatedRun === null && overrides !== null
       ? this.rest.startRun(scenarioName ?? '', overrides, this.newKey())
-      : this.rest.startDocument(withOverrides(document, overrides), this.newKey());
+      : this.rest.startDocument(document, this.newKey());
   }
 
   async cancel(id: string): Promise<void> {

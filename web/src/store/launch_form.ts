@@ -1,6 +1,7 @@
-// The launcher's fields: read from a scenario document, converted to overrides.
+// The launcher's fields: the values of a scenario that are changed most often.
 import type { FieldError } from '../protocol/field_errors';
 import type { Json, JsonObject } from '../protocol/rest_types';
+import { withValue } from './scenario/draft';
 
 export interface FieldSpec {
   /** Dotted path in the scenario document. */
@@ -12,8 +13,8 @@ export interface FieldSpec {
   step?: number;
   /** The field is omitted if the document has no value at this path. */
   needs?: string;
-  /** May be empty. */
-  optional?: boolean;
+  /** May be empty: the value at this path is then removed. */
+  removes?: string;
   /** What an empty field means, shown in it. */
   empty?: string;
   hint: string;
@@ -103,7 +104,7 @@ export const kFields: readonly FieldSpec[] = [
     kind: 'number',
     step: 1,
     needs: kCourse,
-    optional: true,
+    removes: `${kCourse}.wind`,
     empty: 'calm',
     hint: 'Steady wind; needs an airframe',
   },
@@ -114,7 +115,7 @@ export const kFields: readonly FieldSpec[] = [
     kind: 'number',
     step: 10,
     needs: kCourse,
-    optional: true,
+    removes: `${kCourse}.wind.from_deg`,
     empty: '270',
     hint: 'Clockwise from north: 270 is wind from the west',
   },
@@ -149,7 +150,7 @@ export const kFields: readonly FieldSpec[] = [
     unit: 's',
     kind: 'number',
     step: 5,
-    optional: true,
+    removes: 'duration_s',
     empty: 'all',
     hint: 'Ends the flight early; empty = the whole flight',
   },
@@ -199,29 +200,28 @@ export function fieldText(document: JsonObject, field: FieldSpec): string {
   return typeof value === 'number' || typeof value === 'string' ? String(value) : '';
 }
 
-export interface Overrides {
-  overrides: Record<string, Json>;
-  errors: FieldError[];
-}
-
-/** Overrides only the values that differ from the document; limits are checked by the server. */
-export function overridesOf(document: JsonObject, texts: ReadonlyMap<string, string>): Overrides {
-  const overrides: Record<string, Json> = {};
-  const errors: FieldError[] = [];
-  for (const field of fieldsOf(document)) {
-    const text = (texts.get(field.path) ?? '').trim();
-    if (text === fieldText(document, field)) continue;
-    if (field.kind === 'estimators') {
-      overrides[field.path] = estimatorList(text, estimatorsOf(valueAt(document, field.path)));
-    } else if (field.kind === 'choice' || field.kind === 'text') {
-      overrides[field.path] = text;
-    } else if (text !== '' && Number.isFinite(Number(text))) {
-      overrides[field.path] = Number(text);
-    } else {
-      errors.push({ field: field.path, message: 'must be a number' });
-    }
+/**
+ * A document with a field's text as its value; text that is no number stays text, so that its error
+ * can be shown.
+ * @param base  the document without changes, whose estimators keep their settings
+ */
+export function withFieldText(
+  document: JsonObject,
+  base: JsonObject,
+  field: FieldSpec,
+  typed: string,
+): JsonObject {
+  const text = typed.trim();
+  if (text === fieldText(document, field)) return document;
+  if (field.kind === 'estimators') {
+    const known = [document, base].flatMap((one) => estimatorsOf(valueAt(one, field.path)));
+    return withValue(document, field.path, estimatorList(text, known));
   }
-  return { overrides, errors };
+  if (text === '' && field.removes !== undefined) {
+    return withValue(document, field.removes, undefined);
+  }
+  const number = field.kind === 'number' && text !== '' ? Number(text) : NaN;
+  return withValue(document, field.path, Number.isFinite(number) ? number : text);
 }
 
 /** A document with other values, as the server applies overrides. */
@@ -265,7 +265,7 @@ function nameOf(estimator: JsonObject): string {
   return typeof name === 'string' ? name : '';
 }
 
-/** Keeps the document's estimators unchanged; others are native ones, named after their type. */
+/** Keeps known estimators unchanged; others are native ones, named after their type. */
 function estimatorList(text: string, known: JsonObject[]): Json[] {
   return text
     .split(',')

@@ -24,6 +24,8 @@ import type { Clock, RunPlayback } from './run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
+import type { ScenarioEditorState } from './scenario/scenario_editor';
+import { initialScenarioEditor } from './scenario/scenario_editor';
 import type { SceneLook } from './scene/scene_look';
 import { usualLook } from './scene/scene_look';
 import type { SweepPage } from './sweeps/sweep_page';
@@ -56,9 +58,10 @@ export class State {
   /** The run whose scenario the launcher shows; null = that of `scenarioName`. */
   repeatedRun: Run | null = null;
   scenarioSchema: JsonObject | null = null;
-  /** Sections of the scenario edited as JSON: text by section name. */
+  /** Changed sections of the scenario as JSON: text by section name; '' = removed. */
   scenarioEdits = new Map<string, string>();
-  editorOpen = false;
+  scenarioEditor: ScenarioEditorState = initialScenarioEditor();
+  /** What is known to be wrong with the changed scenario. */
   launchErrors: FieldError[] = [];
   launching = false;
   connect: ConnectState = initialConnect();

@@ -100,7 +100,7 @@ function shortcutCommands(context: Context): Command[] {
 
 function pageCommands({
   calibration,
-  catalogue,
+  scenarios,
   connect,
   logs,
   missions,
@@ -150,8 +150,9 @@ function pageCommands({
     {
       id: 'editor',
       group,
-      title: 'Edit the scenario as JSON',
-      run: () => void catalogue.openEditor(),
+      title: 'Edit the scenario',
+      words: 'form json camera estimator parameters save',
+      run: () => void scenarios.openEditor(),
     },
   ];
 }

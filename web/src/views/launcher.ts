@@ -1,14 +1,15 @@
-// Selects a scenario, changes its main parameters, starts a run.
-import type { Run } from '../protocol/rest_types';
+// Selects a scenario, changes what is changed most often, starts a run.
+import type { JsonObject, Run } from '../protocol/rest_types';
 import { formatDate } from '../store/format';
 import { fieldOfError, fieldsOf, fieldText } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
+import { draftOf } from '../store/scenario/draft';
 import type { Topic } from '../store/state';
 import { h, rebuild, setAttribute, setText } from './dom';
 import { makePanel } from './panel';
 import type { Context, View } from './view';
 
-const kEditLabel = 'Edit JSON';
+const kEditLabel = 'Edit scenario';
 /** Value of the option of a run that is flown again: no scenario's name. */
 const kRepeated = '';
 
@@ -16,7 +17,8 @@ interface Field {
   spec: FieldSpec;
   row: HTMLElement;
   error: HTMLElement;
-  read: () => string;
+  /** Shows a text, unless the viewer is typing here. */
+  fill: (text: string) => void;
 }
 
 export class Launcher implements View {
@@ -31,7 +33,8 @@ export class Launcher implements View {
       class: 'secondary',
       type: 'button',
       'data-role': 'edit-json',
-      title: 'All settings of the scenario: camera, lens, sensor, faults, light, ...',
+      title:
+        'All settings of the scenario: camera, estimators and their parameters, world, faults, ...',
     },
     kEditLabel,
   );
@@ -53,7 +56,7 @@ export class Launcher implements View {
         novalidate: true,
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
-          void context.catalogue.launch(this.texts());
+          void context.catalogue.launch();
         },
       },
       this.picker,
@@ -62,7 +65,7 @@ export class Launcher implements View {
       this.errors,
       h('div', { class: 'launch-buttons' }, this.button, this.editor, this.studyButtons()),
     );
-    this.editor.addEventListener('click', () => void context.catalogue.openEditor());
+    this.editor.addEventListener('click', () => void context.scenarios.openEditor());
     panel.body.append(form);
     panel.tools.append(
       h(
@@ -90,10 +93,6 @@ export class Launcher implements View {
     );
   }
 
-  private texts(): Map<string, string> {
-    return new Map(this.fields.map(({ spec, read }) => [spec.path, read()]));
-  }
-
   private studyButtons(): HTMLElement {
     return h(
       'div',
@@ -107,7 +106,7 @@ export class Launcher implements View {
   private studyButton(kind: 'predict' | 'hunt', label: string, title: string): HTMLElement {
     const { catalogue, studies } = this.context;
     const prepare = () => {
-      const source = catalogue.asked(this.texts());
+      const source = catalogue.asked();
       if (source !== null) void studies.prepare(kind, source);
     };
     const role = `open-${kind}`;
@@ -124,12 +123,14 @@ export class Launcher implements View {
     if (changed.has('lists') || changed.has('launch')) this.updatePicker();
     if (!changed.has('launch') && !changed.has('connection')) return;
     const { state } = this.context.store;
-    if (state.scenarioDocument !== this.documentShown) this.buildFields();
+    const { scenarioDocument: base, scenarioEdits } = state;
+    if (base !== this.documentShown) this.buildFields();
+    if (base !== null) this.fillFields(draftOf(base, scenarioEdits).document);
     this.updateErrors();
     this.button.disabled =
       state.launching || state.scenarioDocument === null || state.connection.status !== 'open';
-    const edits = [...state.scenarioEdits].filter(([, text]) => text.trim() !== '');
-    setText(this.editor, edits.length === 0 ? kEditLabel : `${kEditLabel} (${edits.length})`);
+    const { size } = state.scenarioEdits;
+    setText(this.editor, size === 0 ? kEditLabel : `${kEditLabel} (${size})`);
     this.editor.disabled = state.scenarioDocument === null;
     setText(this.button, state.launching ? 'Launching' : 'Launch flight');
   }
@@ -138,11 +139,11 @@ export class Launcher implements View {
     const { scenarios, scenarioName, repeatedRun } = this.context.store.state;
     rebuild(this.picker, JSON.stringify([scenarios, repeatedRun?.id ?? null]), () => [
       ...repeatedOption(repeatedRun),
-      ...(scenarios ?? []).map(({ name, title, error }) =>
+      ...(scenarios ?? []).map(({ name, title, error, saved }) =>
         h(
           'option',
           { value: name, title: error ?? name },
-          error === null ? title : `${title} (unavailable)`,
+          `${saved ? `${title} · ${name}` : title}${error === null ? '' : ' (unavailable)'}`,
         ),
       ),
     ]);
@@ -169,9 +170,16 @@ export class Launcher implements View {
     if (document === null) {
       this.fields = [];
     } else {
-      this.fields = fieldsOf(document).map((spec) => makeField(spec, fieldText(document, spec)));
+      const { scenarios } = this.context;
+      this.fields = fieldsOf(document).map((spec) =>
+        makeField(spec, (text) => scenarios.setField(spec, text)),
+      );
       this.fieldArea.replaceChildren(...this.fields.flatMap(({ row, error }) => [row, error]));
     }
+  }
+
+  private fillFields(document: JsonObject): void {
+    for (const { spec, fill } of this.fields) fill(fieldText(document, spec));
   }
 
   private updateErrors(): void {
@@ -199,64 +207,73 @@ function repeatedOption(run: Run | null): HTMLElement[] {
   return [h('option', { value: kRepeated }, `Again: ${run.title || run.scenario}`)];
 }
 
-function makeField(spec: FieldSpec, text: string): Field {
+type OnText = (text: string) => void;
+
+function makeField(spec: FieldSpec, onText: OnText): Field {
   const id = `field-${spec.path}`;
   const error = h('div', { class: 'field-error', hidden: true, 'data-error-of': spec.path });
-  const { control, read } =
-    spec.kind === 'estimators' ? estimatorControl(spec, text) : valueControl(spec, text, id);
+  const { control, fill } =
+    spec.kind === 'estimators' ? estimatorControl(spec, onText) : valueControl(spec, id, onText);
   const label =
     spec.kind === 'estimators'
       ? h('span', { class: 'label' }, spec.label)
       : h('label', { for: id }, spec.label);
   const row = h('div', { class: `field ${spec.kind}`, title: spec.hint }, label, control);
   if (spec.kind === 'number') row.append(h('span', { class: 'unit' }, spec.unit));
-  return { spec, row, error, read };
+  return { spec, row, error, fill };
 }
 
-function valueControl(spec: FieldSpec, text: string, id: string) {
+function valueControl(spec: FieldSpec, id: string, onText: OnText) {
   if (spec.kind === 'choice') {
-    const choices = [...(spec.choices ?? [])];
-    if (!choices.some(({ value }) => value === text)) choices.push({ value: text, label: text });
-    const select = h(
-      'select',
-      { id },
-      ...choices.map(({ value, label }) => h('option', { value }, label)),
-    );
-    select.value = text;
-    return { control: select, read: () => select.value };
+    const select = h('select', { id });
+    select.addEventListener('change', () => onText(select.value));
+    const fill = (text: string) => {
+      const choices = [...(spec.choices ?? [])];
+      if (!choices.some(({ value }) => value === text)) choices.push({ value: text, label: text });
+      rebuild(select, JSON.stringify(choices), () =>
+        choices.map(({ value, label }) => h('option', { value }, label)),
+      );
+      select.value = text;
+    };
+    return { control: select, fill };
   }
   const input = h('input', {
     id,
     type: spec.kind === 'text' ? 'text' : 'number',
     step: spec.kind === 'text' ? undefined : 'any',
-    value: text,
     placeholder: spec.empty ?? '',
     autocomplete: 'off',
   });
-  return { control: input, read: () => (input.validity.badInput ? 'not a number' : input.value) };
+  input.addEventListener('input', () =>
+    onText(input.validity.badInput ? 'not a number' : input.value),
+  );
+  const fill = (text: string) => {
+    if (document.activeElement !== input && input.value !== text) input.value = text;
+  };
+  return { control: input, fill };
 }
 
-function estimatorControl(spec: FieldSpec, text: string) {
-  const chosen = text.split(',');
-  const choices = [...(spec.choices ?? [])];
-  for (const name of chosen) {
-    if (name !== '' && !choices.some(({ value }) => value === name))
-      choices.push({ value: name, label: name });
-  }
-  const boxes = choices.map(({ value, label }) => {
-    const box = h('input', {
-      type: 'checkbox',
-      value,
-      checked: chosen.includes(value),
-      'data-estimator': value,
-    });
-    return { box, label: h('label', { class: 'check' }, box, label) };
-  });
-  // Keeps the scenario's order if nothing changed, so that nothing is overridden.
-  const read = () => {
-    const ticked = boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+function estimatorControl(spec: FieldSpec, onText: OnText) {
+  const control = h('div', { class: 'checks' });
+  let boxes: HTMLInputElement[] = [];
+  let chosen: string[] = [];
+  // Of the scenario, and of the editor; they stay when they are not chosen any more.
+  const seen = new Map((spec.choices ?? []).map(({ value, label }) => [value, label]));
+  const choose = () => {
+    const ticked = boxes.filter(({ checked }) => checked).map(({ value }) => value);
     const kept = chosen.filter((name) => ticked.includes(name));
-    return [...kept, ...ticked.filter((name) => !chosen.includes(name))].join(',');
+    onText([...kept, ...ticked.filter((name) => !chosen.includes(name))].join(','));
   };
-  return { control: h('div', { class: 'checks' }, ...boxes.map(({ label }) => label)), read };
+  const fill = (text: string) => {
+    chosen = text.split(',').filter((name) => name !== '');
+    for (const name of chosen) if (!seen.has(name)) seen.set(name, name);
+    rebuild(control, JSON.stringify([...seen]), () => {
+      boxes = [...seen.keys()].map((value) =>
+        h('input', { type: 'checkbox', value, 'data-estimator': value, onchange: choose }),
+      );
+      return boxes.map((box) => h('label', { class: 'check' }, box, seen.get(box.value) ?? ''));
+    });
+    for (const box of boxes) box.checked = chosen.includes(box.value);
+  };
+  return { control, fill };
 }

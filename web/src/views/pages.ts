@@ -1,4 +1,4 @@
-// The pages over the dashboard: flight logs, scores of trajectories, calibration of a camera,
+// The pages over the dashboard: the scenario editor, flight logs, scores of trajectories, calibration of a camera,
 // missions, sweeps, studies.
 import { isLayoutFile } from '../store/layouts/layout_file';
 import { PageOverlay } from './page_overlay';
@@ -6,6 +6,12 @@ import type { Context, View } from './view';
 
 export function makePages(context: Context): View[] {
   return [
+    new PageOverlay(context, {
+      name: 'scenario',
+      topic: 'launch',
+      page: ({ scenarioEditor }) => scenarioEditor,
+      load: async (owner) => new (await import('./scenario/scenario_page')).ScenarioPageView(owner),
+    }),
     new PageOverlay(context, {
       name: 'logs',
       topic: 'logs',

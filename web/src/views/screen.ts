@@ -5,7 +5,6 @@ import { HelpOverlay } from './help_overlay';
 import { NoticesView } from './notices_view';
 import { acceptFiles, makePages } from './pages';
 import { Palette } from './palette';
-import { ScenarioEditor } from './scenario_editor';
 import { listenToKeys } from './shortcuts';
 import { Timeline } from './timeline';
 import { ConnectDialog } from './vehicle/connect_dialog';
@@ -23,7 +22,6 @@ export function showScreen(context: Context, place: HTMLElement): void {
     new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),
-    new ScenarioEditor(context),
     new Palette(context),
   ];
   place.replaceChildren(...views.map(({ root }) => root));

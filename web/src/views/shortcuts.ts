@@ -191,7 +191,7 @@ function toggleHelp(store: Context['store']): void {
 
 function restoreScreen({ store, layouts }: Context): void {
   store.state.helpOpen = false;
-  store.state.editorOpen = false;
+  store.state.scenarioEditor.open = false;
   store.state.paletteOpen = false;
   store.state.logPage.open = false;
   store.state.scorePage.open = false;
@@ -201,6 +201,7 @@ function restoreScreen({ store, layouts }: Context): void {
   store.state.studyPage.open = false;
   store.change(
     'help',
+    'launch',
     'logs',
     'missions',
     'palette',

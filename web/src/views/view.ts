@@ -6,6 +6,7 @@ import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene/scene_control';
+import type { ScenarioDesk } from '../store/scenario/scenario_desk';
 import type { Sensors } from '../store/sensors/sensors';
 import type { Session } from '../store/session';
 import type { Catalogue } from '../store/catalogue';
@@ -40,6 +41,7 @@ export interface Context {
   player: Player;
   scene: SceneControl;
   catalogue: Catalogue;
+  scenarios: ScenarioDesk;
   alignment: Alignment;
   cameras: Cameras;
   probe: PixelProbe;

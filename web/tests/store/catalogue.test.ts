@@ -91,12 +91,8 @@ describe('Catalogue', () => {
       'POST /runs': () => [201, sampleRun({ id: 'new', status: 'running' })],
     });
     await subject.readScenarios();
-    await subject.launch(
-      new Map([
-        ['seed', '2'],
-        ['pacing', 'lockstep'],
-      ]),
-    );
+    store.state.scenarioEdits = new Map([['seed', '2']]);
+    expect(await subject.launch()).toBe(true);
     expect(store.state.runs?.map(({ id }) => id)).toEqual(['new']);
     expect(socket.sent.find(({ type }) => type === 'watch')).toMatchObject({ run: 'new' });
     expect(store.state.launching).toBe(false);
@@ -112,12 +108,8 @@ describe('Catalogue', () => {
       ],
     });
     await subject.readScenarios();
-    await subject.launch(
-      new Map([
-        ['seed', '-1'],
-        ['pacing', 'lockstep'],
-      ]),
-    );
+    store.state.scenarioEdits = new Map([['seed', '-1']]);
+    expect(await subject.launch()).toBe(false);
     expect(store.state.launchErrors).toEqual([{ field: 'seed', message: 'must be at least 0' }]);
     expect(store.state.runId).toBeNull();
   });
@@ -137,16 +129,44 @@ describe('Catalogue', () => {
     await subject.repeat(sampleRun({ id: 'r1', scenario: 'of_a_file' }));
     expect(store.state.scenarioDocument).toEqual(flown);
     expect(store.state.scenarioName).toBe('course');
-    const texts = [
-      ['seed', '8'],
-      ['pacing', 'lockstep'],
-    ] as const;
-    await subject.launch(new Map(texts));
+    store.state.scenarioEdits = new Map([['seed', '8']]);
+    await subject.launch();
     expect(sent).toEqual([{ document: { ...flown, seed: 8 } }]);
     expect(store.state.runId).toBe('new');
     await subject.selectScenario('course');
-    await subject.launch(new Map(texts));
+    expect(store.state.scenarioEdits.size).toBe(0);
+    store.state.scenarioEdits = new Map([['seed', '8']]);
+    await subject.launch();
     expect(sent[1]).toEqual({ scenario: 'course', overrides: { seed: 8 } });
+  });
+
+  it('sends the whole scenario where a section was removed, which overrides cannot say', async () => {
+    const sent: unknown[] = [];
+    const { store, subject } = catalogue({
+      ...reading,
+      'POST /runs': (body) => {
+        sent.push(JSON.parse(body));
+        return [201, sampleRun({ id: 'new', status: 'running' })];
+      },
+    });
+    await subject.readScenarios();
+    store.state.scenarioEdits = new Map([['estimators', '']]);
+    expect(subject.chosen()).toMatchObject({ document: { seed: 1, pacing: 'lockstep' } });
+    await subject.launch();
+    expect(sent).toEqual([{ document: { seed: 1, pacing: 'lockstep' } }]);
+  });
+
+  it('does not ask the server to fly what is known to be wrong', async () => {
+    const { store, subject } = catalogue(reading);
+    await subject.readScenarios();
+    store.state.scenarioSchema = { properties: { seed: { type: 'integer' } } };
+    store.state.scenarioEdits = new Map([
+      ['seed', '1.5'],
+      ['pacing', '{'],
+    ]);
+    expect(await subject.launch()).toBe(false);
+    expect(store.state.launchErrors.map(({ field }) => field)).toEqual(['pacing', 'seed']);
+    expect(subject.asked()).toBeNull();
   });
 
   it('keeps the form if what a run flew cannot be read', async () => {

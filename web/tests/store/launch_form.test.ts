@@ -4,7 +4,7 @@ import {
   fieldOfError,
   fieldsOf,
   fieldText,
-  overridesOf,
+  withFieldText,
   withOverrides,
 } from '../../src/store/launch_form';
 
@@ -18,64 +18,60 @@ const course: JsonObject = {
   pacing: 'lockstep',
 };
 
-function texts(document: JsonObject, changes: Record<string, string> = {}): Map<string, string> {
-  const map = new Map(fieldsOf(document).map((field) => [field.path, fieldText(document, field)]));
-  for (const [path, text] of Object.entries(changes)) map.set(path, text);
-  return map;
+/** The document after texts were typed into its fields. */
+function typed(document: JsonObject, changes: Record<string, string>): JsonObject {
+  return Object.entries(changes).reduce((changed, [path, text]) => {
+    const field = fieldsOf(document).find((one) => one.path === path);
+    if (field === undefined) throw new Error(`no field ${path}`);
+    return withFieldText(changed, document, field, text);
+  }, document);
 }
 
 describe('the launcher', () => {
-  it('overrides nothing when nothing was changed', () => {
-    expect(overridesOf(course, texts(course))).toEqual({ overrides: {}, errors: [] });
+  it('changes nothing while nothing else is typed', () => {
+    const texts = fieldsOf(course).map((field) => [field.path, fieldText(course, field)] as const);
+    expect(typed(course, Object.fromEntries(texts))).toBe(course);
   });
 
-  it('overrides what was changed, as numbers', () => {
-    const { overrides } = overridesOf(
-      course,
-      texts(course, {
-        'flight.course.airspeed_m_s': '10',
-        duration_s: '20.5',
-        pacing: 'real_time',
-      }),
-    );
-    expect(overrides).toEqual({
-      'flight.course.airspeed_m_s': 10,
+  it('takes what is typed, as numbers', () => {
+    const changed = typed(course, {
+      'flight.course.airspeed_m_s': '10',
+      duration_s: '20.5',
+      pacing: 'real_time',
+    });
+    expect(changed).toMatchObject({
+      flight: { course: { airspeed_m_s: 10, height_agl_m: 300 } },
       duration_s: 20.5,
       pacing: 'real_time',
     });
+    expect(course['pacing']).toBe('lockstep');
   });
 
-  it('lets an airframe fly the course in wind and turbulence', () => {
+  it('removes what is optional when its field is emptied', () => {
     const flown: JsonObject = {
       ...course,
-      flight: { course: { airspeed_m_s: 25, dynamics: 'coordinated', turbulence: 'none' } },
+      duration_s: 20,
+      flight: { course: { airspeed_m_s: 25, wind: { speed_m_s: 5, from_deg: 90 } } },
     };
-    const { overrides, errors } = overridesOf(
-      flown,
-      texts(flown, {
-        'flight.course.dynamics': 'piper_cub_third',
-        'flight.course.turbulence': 'light',
-        'flight.course.wind.speed_m_s': '5',
-      }),
-    );
-    expect(errors).toEqual([]);
-    expect(overrides).toEqual({
-      'flight.course.dynamics': 'piper_cub_third',
-      'flight.course.turbulence': 'light',
-      'flight.course.wind.speed_m_s': 5,
+    const calm = typed(flown, { 'flight.course.wind.speed_m_s': '', duration_s: '' });
+    expect(calm).not.toHaveProperty('duration_s');
+    expect(calm['flight']).toEqual({ course: { airspeed_m_s: 25 } });
+    expect(typed(flown, { 'flight.course.wind.from_deg': '' })['flight']).toEqual({
+      course: { airspeed_m_s: 25, wind: { speed_m_s: 5 } },
     });
   });
 
-  it('turns estimators off, and keeps the parameters of those that stay', () => {
-    expect(overridesOf(course, texts(course, { estimators: '' })).overrides).toEqual({
-      estimators: [],
-    });
-    expect(overridesOf(course, texts(course, { estimators: 'orb,drifting' })).overrides).toEqual({
-      estimators: [
-        { name: 'orb', type: 'feature', parameters: { features: 900 } },
-        { name: 'drifting', type: 'drifting' },
-      ],
-    });
+  it('turns estimators off and on again, and keeps their parameters', () => {
+    const none = typed(course, { estimators: '' });
+    expect(none['estimators']).toEqual([]);
+    const both = [
+      { name: 'orb', type: 'feature', parameters: { features: 900 } },
+      { name: 'drifting', type: 'drifting' },
+    ];
+    expect(typed(course, { estimators: 'orb,drifting' })['estimators']).toEqual(both);
+    const field = fieldsOf(course).find(({ kind }) => kind === 'estimators');
+    if (field === undefined) throw new Error('no field of the estimators');
+    expect(withFieldText(none, course, field, 'orb')['estimators']).toEqual([both[0]]);
   });
 
   it('puts values into a document as the server does', () => {
@@ -97,15 +93,12 @@ describe('the launcher', () => {
     const orb = { name: 'orb', type: 'process', command: ['orb'] };
     const svo = { name: 'svo', type: 'process', command: ['svo'] };
     const doors: JsonObject = { ...course, estimators: [orb, svo] };
-    expect(overridesOf(doors, texts(doors, {})).overrides).toEqual({});
-    expect(overridesOf(doors, texts(doors, { estimators: 'svo' })).overrides).toEqual({
-      estimators: [svo],
-    });
+    expect(typed(doors, { estimators: 'svo' })['estimators']).toEqual([svo]);
   });
 
-  it('rejects text that is not a number', () => {
-    const { errors } = overridesOf(course, texts(course, { seed: '', 'world.builtin.seed': 'x' }));
-    expect(errors.map(({ field }) => field)).toEqual(['seed', 'world.builtin.seed']);
+  it('keeps text that is not a number, so that its error can be shown', () => {
+    const changed = typed(course, { seed: '', 'world.builtin.seed': 'x' });
+    expect(changed).toMatchObject({ seed: '', world: { builtin: { seed: 'x' } } });
   });
 
   it('shows only the fields that the scenario has', () => {
@@ -129,10 +122,7 @@ describe('the launcher', () => {
   it('has a field for the link of a live vehicle only', () => {
     const live = { flight: { mavlink: { link: 'tcp:127.0.0.1:5760' } } };
     expect(fieldsOf(course).map(({ path }) => path)).not.toContain('flight.mavlink.link');
-    expect(texts(live).get('flight.mavlink.link')).toBe('tcp:127.0.0.1:5760');
-    const changed = texts(live, { 'flight.mavlink.link': 'udp:127.0.0.1:14550' });
-    expect(overridesOf(live, changed).overrides).toEqual({
-      'flight.mavlink.link': 'udp:127.0.0.1:14550',
-    });
+    const changed = typed(live, { 'flight.mavlink.link': 'udp:127.0.0.1:14550' });
+    expect(changed).toEqual({ flight: { mavlink: { link: 'udp:127.0.0.1:14550' } } });
   });
 });

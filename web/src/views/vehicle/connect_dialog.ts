@@ -115,7 +115,7 @@ export class ConnectDialog implements View {
       this.rest,
       h(
         'div',
-        { class: 'editor-buttons' },
+        { class: 'connect-buttons' },
         h(
           'button',
           { class: 'secondary', type: 'button', onclick: () => this.context.connect.close() },
