@@ -33,6 +33,7 @@ import { initialStudyPage } from './studies/study_page';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
+import type { PlotWindow } from './time_window';
 import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 
 export interface Notice {
@@ -86,6 +87,14 @@ export class State {
   /** What was asked about the pixel there, and the answer or why there is none. */
   pixel: { question: PixelQuestion; answer: PixelAnswer | string } | null = null;
   scene: SceneLook = usualLook();
+  /** Group of plots that the panel of all of them shows; null = the first. */
+  plotGroup: string | null = null;
+  /** The part of the clock's time that plots show; null = all. */
+  plotWindow: PlotWindow | null = null;
+  /** The estimator whose debug images are shown; null = the first. */
+  debugOf: string | null = null;
+  /** The estimator whose view is compared; null = the camera's image itself. */
+  imageErrorOf: string | null = null;
   notices: Notice[] = [];
   helpOpen = false;
   paletteOpen = false;
@@ -186,6 +195,7 @@ const kTopicNames = [
   'zoom',
   'hover',
   'scene',
+  'plots',
   'cameras',
   'sensors',
   'notices',

@@ -58,7 +58,7 @@ export class WatchedRun {
   rates = new Map<string, PictureRate>();
   readonly meter = new PictureMeter();
   /** Tracks that the viewer has hidden: names of estimators, '' = the truth. */
-  readonly hidden = new Set<string>();
+  hidden: ReadonlySet<string> = new Set();
 
   constructor(readonly id: string) {}
 

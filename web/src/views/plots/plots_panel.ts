@@ -5,7 +5,7 @@ import { formatTime } from '../../store/format';
 import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
-import { following, zoomed } from '../../store/time_window';
+import { windowAt, zoomed } from '../../store/time_window';
 import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
@@ -65,18 +65,14 @@ export class PlotsPanel implements View {
     title: 'Alignment of the estimates to the truth (selected above the errors)',
   });
   private readonly hoverTime = h('span', { class: 'hover-time' });
-  private group: Group = 'pose';
   private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
   private readonly paths: readonly PathPlot[];
   private key = '';
-  private runs = '';
   private drawn_ms = -Infinity;
   private timer = 0;
   /** Time under the mouse. */
   private hovered_s: number | null = null;
-  /** The part zoomed to; null = the whole flight. */
-  private window_s: Span | null = null;
 
   /** @param only  shows only this group, as a panel of its own */
   constructor(
@@ -92,8 +88,7 @@ export class PlotsPanel implements View {
       () => this.shownPlots(),
       (text) => context.notices.error(text),
     );
-    if (only !== null) this.group = only;
-    else this.panel.tools.append(this.tabs);
+    if (only === null) this.panel.tools.append(this.tabs);
     this.panel.tools.append(this.files, this.alignment, this.hoverTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
@@ -103,6 +98,7 @@ export class PlotsPanel implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     if (changed.has('run') || changed.has('rows') || changed.has('sensors')) this.drawSoon();
+    if (changed.has('plots')) this.drawSoon();
     if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
@@ -114,6 +110,16 @@ export class PlotsPanel implements View {
 
   onHidden(): void {
     if (this.only === null) this.context.sensors.hide();
+  }
+
+  private get group(): Group {
+    const { plotGroup } = this.context.store.state;
+    return this.only ?? kGroups.find(({ name }) => name === plotGroup)?.name ?? kGroups[0].name;
+  }
+
+  /** The part zoomed to; null = the whole flight. */
+  private get window_s(): Span | null {
+    return this.context.store.state.plotWindow?.span_s ?? null;
   }
 
   private drawSoon(): void {
@@ -160,19 +166,23 @@ export class PlotsPanel implements View {
   }
 
   private zoom(centre_s: number, factor: number): void {
+    const { store } = this.context;
     const whole = this.whole();
-    this.window_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
-    this.drawSoon();
+    const span_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
+    const chosen_ns = store.state.clock?.t_ns ?? null;
+    store.state.plotWindow = span_s === null ? null : { span_s, chosen_ns, reached: true };
+    store.change('plots');
   }
 
   /** Keeps the cursor inside the window. */
   private followCursor(): void {
-    const { clock } = this.context.store.state;
-    if (this.window_s === null || clock === null) return;
-    const moved = following(this.window_s, this.whole(), clock.t_ns / 1e9);
-    if (moved === this.window_s) return;
-    this.window_s = moved;
-    this.drawSoon();
+    const { store } = this.context;
+    const { clock, plotWindow } = store.state;
+    if (plotWindow === null || clock === null) return;
+    const now = windowAt(plotWindow, this.whole(), clock);
+    if (now === plotWindow) return;
+    store.state.plotWindow = now;
+    store.change('plots');
   }
 
   /** Unchanged as long as the plots need not be rebuilt. */
@@ -213,9 +223,6 @@ export class PlotsPanel implements View {
 
   private build(): void {
     const { state } = this.context.store;
-    const runs = state.watched.map(({ id }) => id).join(' ');
-    if (runs !== this.runs) this.window_s = null;
-    this.runs = runs;
     this.key = this.wantedKey();
     for (const plot of this.plots) plot.destroy();
     // The mouse does not leave a plot that is removed.
@@ -275,8 +282,8 @@ export class PlotsPanel implements View {
             'aria-pressed': name === this.group ? 'true' : 'false',
             'data-attention': attention && name === 'estimators',
             onclick: () => {
-              this.group = name;
-              this.draw();
+              this.context.store.state.plotGroup = name;
+              this.context.store.change('plots');
             },
           },
           label,
