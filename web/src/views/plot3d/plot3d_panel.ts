@@ -155,7 +155,9 @@ export class Plot3dPanel implements View {
     stage.draw(current, size, view.drawnBox, heightScale);
     const marksPen = penOf(this.marks, size);
     const options = { floor_m: scales[2].low, errorLines: this.errorLines };
-    if (marksPen !== null) paintMarks(marksPen, marksOf(state), current, map, options);
+    const marks = marksOf(state);
+    if (marksPen !== null) paintMarks(marksPen, marks, current, map, options);
+    setAttribute(this.root, 'data-marks', marksText(marks));
     this.draws += 1;
     setAttribute(this.root, 'data-draws', String(this.draws));
     setAttribute(this.root, 'data-points', String(tracks.pointCount));
@@ -205,11 +207,12 @@ export class Plot3dPanel implements View {
 /** Every shown track that has a pose at the clock's time. */
 function marksOf(state: State): Mark[] {
   return tracksOf(state).flatMap((track) => {
-    const { run, name, letter, shown } = track;
+    const { run, name, letter, label, shown } = track;
     const truth = run.instant?.truth ?? null;
     const pose = name === '' ? truth : run.instant?.estimates[name]?.pose;
     if (!shown || pose === undefined || pose === null) return [];
     return {
+      label,
       place: [pose.x_m, pose.y_m, pose.z_m],
       axes: bodyAxes(pose),
       colour: curveStyle(trackHue(track)).colour,
@@ -218,6 +221,13 @@ function marksOf(state: State): Mark[] {
       truthPlace: name === '' || truth === null ? null : [truth.x_m, truth.y_m, truth.z_m],
     };
   });
+}
+
+/** Which aircraft are drawn and where [m]. */
+export function marksText(marks: readonly { label: string; place: readonly number[] }[]): string {
+  return marks
+    .map(({ label, place }) => [label, ...place.map((part) => part.toFixed(3))].join(' '))
+    .join('; ');
 }
 
 /** Of a canvas that was cleared, in CSS pixels. */

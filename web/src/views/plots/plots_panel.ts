@@ -73,6 +73,8 @@ export class PlotsPanel implements View {
   private timer = 0;
   /** Time under the mouse. */
   private hovered_s: number | null = null;
+  /** Time of the clock when it was drawn last. */
+  private shown_s: number | null = null;
 
   /** @param only  shows only this group, as a panel of its own */
   constructor(
@@ -294,12 +296,16 @@ export class PlotsPanel implements View {
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
-    for (const plot of this.plots) plot.moveCursor(this.cursor_s());
+    const cursor_s = this.cursor_s();
+    // A mouse that rests while the clock is moved does not keep values of another instant.
+    if (playback?.playing === false && cursor_s !== this.shown_s) this.hover(null);
+    this.shown_s = cursor_s;
+    for (const plot of this.plots) plot.moveCursor(cursor_s);
     if (this.group === 'path') {
       for (const path of this.paths) path.moveMarks(this.context.store.state);
     }
     this.panel.showFrame(frameOf(playback));
-    if (this.hovered_s === null) this.showCursorValues();
+    this.showValues();
   }
 
   private cursor_s(): number | null {
@@ -320,10 +326,22 @@ export class PlotsPanel implements View {
 
   /** Shows values under the mouse in place of those at the cursor. */
   private hover(t_s: number | null): void {
-    this.hovered_s = t_s;
-    setText(this.hoverTime, t_s === null ? '' : formatTime(t_s * 1e9));
-    if (t_s === null) this.showCursorValues();
-    else for (const plot of this.plots) plot.showHover(t_s);
+    this.hovered_s = t_s === null ? null : this.readAt_s(t_s);
+    setText(this.hoverTime, this.hovered_s === null ? '' : formatTime(this.hovered_s * 1e9));
+    this.showValues();
+  }
+
+  /** Of frames the one to which a click seeks: the values do not change by it. */
+  private readAt_s(t_s: number): number {
+    const ownTimes: readonly Group[] = ['sensors', 'vehicle'];
+    if (ownTimes.includes(this.group)) return t_s;
+    return this.context.player.seekTarget_ns(t_s * 1e9) / 1e9;
+  }
+
+  private showValues(): void {
+    const { hovered_s } = this;
+    if (hovered_s === null || hovered_s === this.cursor_s()) this.showCursorValues();
+    else for (const plot of this.plots) plot.showHover(hovered_s);
   }
 }
 
