@@ -42,7 +42,10 @@ async function look(view) {
         entry.getAttribute('aria-current'),
         entry.querySelector('input').value,
       ]),
-      tracks: all('.shown-tracks .track-button').map((button) => button.getAttribute('aria-pressed')),
+      tracks: all('.track-chip').map((chip) => [
+        chip.querySelector('.track-button').getAttribute('aria-pressed'),
+        getComputedStyle(chip.querySelector('i')).backgroundColor,
+      ]),
       chosen: ['alignment', 'camera', 'debug-of', 'image-error-of', 'speed'].map(
         (id) => document.getElementById(id)?.value,
       ),
@@ -114,6 +117,11 @@ describe('links', { skip, timeout: 600_000 }, () => {
     const button = (run, name) =>
       page.locator(`[data-shown-run="${run}"] .track-button`, { hasText: name });
     await button(kSlow, 'strays').click();
+    await page.getByLabel('Choose the colour of B flat').click();
+    await dashboard.screenshot('track_colour_1600x900');
+    await page.getByLabel('Cyan for B flat').click();
+    await page.getByLabel('Choose the colour of A drifts').click();
+    await page.getByLabel('Any colour for A drifts').fill('#7a3b00');
     await button(kFast, 'truth').click();
     // The clock.
     await dashboard.seekAt('.track .bar', 0.2, kPanels);
@@ -151,7 +159,7 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await page.mouse.move(5, 5);
     await page.keyboard.press('2');
     await untilWritten(
-      ...['layout', 'panels', 'run', 'view', 'align', 'hide', 'plots', 'window', 'range'],
+      ...['layout', 'panels', 'run', 'view', 'align', 'hide', 'plots', 'window', 'range', 'colour'],
       ...['speed', 'loop', 'camera', 'debug', 'error', 'zoom', 't'],
     );
   });
@@ -217,6 +225,28 @@ describe('links', { skip, timeout: 600_000 }, () => {
       assert.equal(t_ns, 2.5e9);
       await other.page.locator('.menu[data-layout=fly]').waitFor();
     });
+  });
+
+  step('hide each track of a run that is shown alone', async () => {
+    await page.goto('about:blank');
+    await dashboard.open(`${stage.server.url}/#layout=compare&run=${kSlow}&t=3`);
+    await dashboard.untilSameInstant(kPanels.filter((panel) => panel !== 'camera'));
+    const values = () => page.locator('[data-panel=plots] [data-axis=x_m] .readout').count();
+    const tracks = () => page.evaluate(() => document.querySelector('[data-panel=plot3d]')?.dataset.tracks);
+    await page.locator('.dv-tab', { hasText: /^3D plot$/ }).click();
+    await dashboard.until(() => document.querySelector('[data-panel=plot3d]')?.dataset.tracks === '4');
+    assert.equal(await values(), 4);
+    for (const [i, name] of ['truth', 'strays', 'flat'].entries()) {
+      await page.getByRole('button', { name: `Show ${name}` }).click();
+      await dashboard.until((left) => {
+        const readouts = document.querySelectorAll('[data-panel=plots] [data-axis=x_m] .readout');
+        return readouts.length === left && document.querySelector('[data-panel=plot3d]').dataset.tracks === String(left);
+      }, 3 - i);
+    }
+    await dashboard.screenshot('hidden_tracks_1600x900');
+    await page.getByRole('button', { name: 'Show truth' }).click();
+    await dashboard.until(() => document.querySelector('[data-panel=plot3d]').dataset.tracks === '2');
+    assert.equal(await tracks(), '2');
   });
 
   step('logged no error in the page', () => {

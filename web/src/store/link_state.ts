@@ -10,6 +10,7 @@ import type { SceneControl } from './scene/scene_control';
 import { lookFrom, showText, viewText } from './scene/scene_look';
 import type { Session } from './session';
 import type { State, Store } from './state';
+import { colourKey, coloursOf } from './track_colours';
 
 /** Where an address is applied. */
 export interface Linked {
@@ -28,7 +29,9 @@ export function linkOf({ store, layouts }: Pick<Linked, 'store' | 'layouts'>): P
   if (runId !== null && clock === null) return null;
   const { name, tree } = layouts.shared;
   return {
-    runs: watched,
+    runs: watched.map(({ id, offset_ns, hidden, camera }) => {
+      return { id, offset_ns, hidden, camera, colours: coloursOf(state.colours, id) };
+    }),
     main: runId,
     t_ns: clock === null || clock.live ? null : clock.t_ns,
     // The default one is not named while there is nothing else to link to.
@@ -54,12 +57,16 @@ export function openLink(link: ReadPermalink, linked: Linked): void {
   scene.apply(lookFrom(link.view, link.show));
   session.setSideBySide(link.sideBySide);
   session.showRuns(runs, main, t_ns, choices.clock);
-  for (const { id, hidden, camera } of runs) {
+  const chosen = new Map(state.colours);
+  for (const { id, hidden, camera, colours } of runs) {
     const watched = state.watchedRun(id);
     if (watched === undefined) continue;
     watched.hidden = new Set(hidden);
     watched.camera = camera;
+    for (const name of coloursOf(chosen, id).keys()) chosen.delete(colourKey(id, name));
+    for (const [name, colour] of colours) chosen.set(colourKey(id, name), colour);
   }
+  state.colours = chosen;
   const { window_s, plotGroup, debugOf, imageErrorOf, zooms } = choices;
   state.plotGroup = plotGroup;
   state.plotWindow =

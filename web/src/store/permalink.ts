@@ -6,6 +6,8 @@ import { LayoutError } from './layouts/layout_tree';
 import type { LinkChoices } from './link_choices';
 import { nameOf, readChoices, readPart, writeChoices } from './link_choices';
 import { kMostRuns } from './session';
+import type { TrackColour } from './track_colours';
+import { isTrackColour } from './track_colours';
 
 export interface ShownRun {
   id: string;
@@ -18,6 +20,8 @@ export interface LinkedRun extends ShownRun {
   hidden: ReadonlySet<string>;
   /** null = the first. */
   camera: string | null;
+  /** Given to tracks by the viewer, by the names of their estimators. */
+  colours: ReadonlyMap<string, TrackColour>;
 }
 
 export interface Permalink {
@@ -51,7 +55,7 @@ const kMostOfRuns = 300;
 
 /**
  * "#layout=NAME&panels=ARRANGEMENT&study=NAME&run=ID&run=ID@OFFSET&main=ID&view=VIEW&show=PARTS&
- * pictures=main&hide=A&hide=B/ESTIMATOR&camera=A/NAME&...&t=SECONDS": OFFSET in seconds, by default
+ * pictures=main&hide=A&hide=B/ESTIMATOR&camera=A/NAME&colour=3,B/ESTIMATOR&...&t=SECONDS": OFFSET in seconds, by default
  * 0; A, B, ... are the runs in their order; for the rest see link_choices.ts. Unknown parts are
  * ignored.
  */
@@ -95,8 +99,9 @@ export function formatPermalink(link: Permalink): string {
   if (view !== '') fields.set('view', view);
   if (show !== '') fields.set('show', show);
   if (!sideBySide) fields.set('pictures', 'main');
-  runs.forEach(({ hidden, camera }, i) => {
+  runs.forEach(({ hidden, camera, colours }, i) => {
     for (const name of hidden) fields.append('hide', ofRun(i, name));
+    for (const [name, colour] of colours) fields.append('colour', `${colour},${ofRun(i, name)}`);
     if (camera !== null) fields.append('camera', ofRun(i, camera));
   });
   writeChoices(choices, fields);
@@ -113,23 +118,33 @@ function linkedRuns(
     ...run,
     hidden: new Set<string>(),
     camera: null as string | null,
+    colours: new Map<string, TrackColour>(),
   }));
-  const each = (field: string, take: (run: (typeof linked)[number], name: string) => boolean) => {
+  type Take = (run: (typeof linked)[number], name: string, before: string) => boolean;
+  const each = (field: string, take: Take) => {
     const texts = fields.getAll(field);
     if (texts.length > kMostOfRuns) problems.push(field);
     for (const text of texts.slice(0, kMostOfRuns)) {
-      const [, letter = '', name = ''] = /^([A-P])(?:\/(.{1,200}))?$/u.exec(text) ?? [];
+      const parts = /^(?:([^,/]*),)?([A-P])(?:\/(.{1,200}))?$/u.exec(text);
+      const [, before = '', letter = '', name = ''] = parts ?? [];
       const run = linked[letter === '' ? -1 : letterIndex(letter)];
-      readPart(field, text, () => (run !== undefined && take(run, name)) || null, problems);
+      readPart(field, text, () => (run !== undefined && take(run, name, before)) || null, problems);
     }
   };
-  each('hide', ({ hidden }, name) => {
+  each('hide', ({ hidden }, name, before) => {
+    if (before !== '') return false;
     hidden.add(name);
     return true;
   });
-  each('camera', (run, name) => {
-    run.camera = nameOf(name);
-    return run.camera !== null;
+  each('camera', (run, name, before) => {
+    if (before !== '' || nameOf(name) === null) return false;
+    run.camera = name;
+    return true;
+  });
+  each('colour', ({ colours }, name, colour) => {
+    if (!isTrackColour(colour)) return false;
+    colours.set(name, colour);
+    return true;
   });
   return linked;
 }

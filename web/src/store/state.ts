@@ -34,6 +34,7 @@ import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
 import type { PlotWindow } from './time_window';
+import type { TrackColour } from './track_colours';
 import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 
 export interface Notice {
@@ -70,6 +71,8 @@ export class State {
   clock: Clock | null = null;
   /** Requested and not confirmed yet. */
   wantedSpeed: number | null = null;
+  /** Colours that the viewer gave to tracks (track_colours.ts). */
+  colours: ReadonlyMap<string, TrackColour> = new Map();
   /** Chosen by the viewer; shown once a run is scored. */
   alignment: string = kDefaultAlignment;
   /** Of the main run; read while their plots are shown. */

@@ -1,5 +1,7 @@
 // The tracks of the watched runs: the true one and one of each estimator.
 import type { State } from './state';
+import type { TrackColour } from './track_colours';
+import { colourKey } from './track_colours';
 import type { WatchedRun } from './watched_run';
 
 export interface Track {
@@ -12,6 +14,8 @@ export interface Track {
   letter: string;
   /** Index of the estimate's colour; of the truth: of its run's first estimate. */
   colour: number;
+  /** Given by the viewer instead; null = none. */
+  chosen: TrackColour | null;
   /** Position of its run among the watched ones. */
   order: number;
   shown: boolean;
@@ -23,7 +27,7 @@ export function runLetter({ watched }: Pick<State, 'watched'>, run: WatchedRun):
 }
 
 /** All tracks, run by run; each run's truth comes first. */
-export function tracksOf(state: Pick<State, 'watched'>): Track[] {
+export function tracksOf(state: Pick<State, 'watched' | 'colours'>): Track[] {
   let colour = 0;
   return state.watched.flatMap((run, order) => {
     const letter = runLetter(state, run);
@@ -35,6 +39,7 @@ export function tracksOf(state: Pick<State, 'watched'>): Track[] {
       letter,
       label: `${prefix}${name === '' ? 'truth' : name}`,
       colour: name === '' ? colour : colour++,
+      chosen: state.colours.get(colourKey(run.id, name)) ?? null,
       order,
       shown: !run.hidden.has(name),
     }));

@@ -19,7 +19,7 @@ import type { Track } from '../store/tracks';
 import { tracksOf } from '../store/tracks';
 import type { WatchedRun } from '../store/watched_run';
 import { copyText } from './clipboard';
-import { estimateColour, kStateColours } from './colours';
+import { kStateColours, trackColour } from './colours';
 import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { frameOf, makePanel } from './panel';
@@ -184,13 +184,13 @@ function allMetrics(watched: readonly WatchedRun[]): Metrics {
   return { estimators: Object.fromEntries(entries) };
 }
 
-function headOf({ label, colour }: Track) {
-  return [label, colour];
+function headOf(track: Track) {
+  return [track.label, trackColour(track)];
 }
 
 function headRow(tracks: Track[]): HTMLElement {
-  const heads = tracks.map(({ label, colour }) =>
-    h('th', { scope: 'col', style: `color:${estimateColour(colour)}` }, label),
+  const heads = tracks.map((track) =>
+    h('th', { scope: 'col', style: `color:${trackColour(track)}` }, track.label),
   );
   return h('tr', {}, h('th', {}), ...heads);
 }

@@ -26,7 +26,8 @@ const kPanels: LayoutNode = {
 };
 
 function alone(id: string, more: Partial<LinkedRun> = {}): LinkedRun[] {
-  return [{ id, offset_ns: 0, hidden: new Set(), camera: null, ...more }];
+  const none = { hidden: new Set<string>(), camera: null, colours: new Map<string, string>() };
+  return [{ id, offset_ns: 0, ...none, ...more }];
 }
 
 function read(hash: string): Permalink {
@@ -40,7 +41,14 @@ describe('permalink', () => {
     const link: Permalink = {
       runs: [
         ...alone('20260102-a b&c', { hidden: new Set(['', 'dso, fast']), camera: 'left' }),
-        ...alone('r2', { hidden: new Set(['a/b']), offset_ns: 2e9 }),
+        ...alone('r2', {
+          hidden: new Set(['a/b']),
+          offset_ns: 2e9,
+          colours: new Map([
+            ['', '3'],
+            ['a,b/c', 'ff8800'],
+          ]),
+        }),
       ],
       main: null,
       t_ns: 12_345_000_000,
@@ -120,6 +128,12 @@ describe('permalink', () => {
     ['hide', 'Z/feature'],
     ['hide', 'a'],
     ['camera', 'A'],
+    ['camera', '3,A/left'],
+    ['hide', '3,A'],
+    ['colour', 'A/feature'],
+    ['colour', '7,A/feature'],
+    ['colour', 'FF0000,A'],
+    ['colour', 'url(x),A'],
     ['camera', `A/${'n'.repeat(201)}`],
     ['panels', 'e30'],
   ])('leaves out %s=%s, says so, and reads the rest', (name, value) => {

@@ -6,6 +6,7 @@ import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { State } from '../state';
 import type { Table } from '../table';
+import type { TrackColour } from '../track_colours';
 import type { Track } from '../tracks';
 import { tracksOf } from '../tracks';
 import type { WatchedRun } from '../watched_run';
@@ -16,8 +17,8 @@ export type PlotGroup = 'pose' | 'errors' | 'image' | 'estimates' | 'sensors' | 
 
 /** Truth is red, an estimate has its own colour, other curves are neutral or of an axis. */
 export type CurveHue =
-  | { kind: 'truth'; order: number }
-  | { kind: 'estimate'; colour: number }
+  | { kind: 'truth'; order: number; chosen?: TrackColour }
+  | { kind: 'estimate'; colour: number; chosen?: TrackColour }
   | { kind: 'run'; order: number }
   | { kind: 'axis'; axis: number };
 
@@ -154,8 +155,9 @@ function tableOf({ run, name }: Track): Table | undefined {
   return name === '' ? run.data.truth : run.shownEstimate(name)?.table;
 }
 
-function hueOf({ name, order, colour }: Track): CurveHue {
-  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
+export function hueOf({ name, order, colour, chosen }: Track): CurveHue {
+  const own = chosen === null ? {} : { chosen };
+  return name === '' ? { kind: 'truth', order, ...own } : { kind: 'estimate', colour, ...own };
 }
 
 /** Frames that were dropped do not break a curve; lost ones have no value and do. */

@@ -4,10 +4,11 @@ import { kPanels } from '../../store/layouts/panel_names';
 import { bodyAxes } from '../../store/plot3d/attitude';
 import { boxOfAll } from '../../store/plot3d/axis_box';
 import type { Size } from '../../store/plots/path_frame';
+import { hueOf } from '../../store/plots/plot_specs';
 import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
-import { curveStyle, trackHue } from '../colours';
+import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
 import type { Panel } from '../panel';
@@ -116,14 +117,18 @@ export class Plot3dPanel implements View {
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
     const estimates = shown.some(({ name }) => name !== '');
     const labels = shown.map(({ label }) => label);
-    rebuild(this.legend, JSON.stringify([alignment, labels]), () => [
-      ...shown.map((track) => {
-        const { colour, dash } = curveStyle(trackHue(track));
-        const dashed = dash.length > 0 ? 'dashed' : '';
-        return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), track.label);
-      }),
-      ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
-    ]);
+    rebuild(
+      this.legend,
+      JSON.stringify([alignment, shown.map((one) => [one.label, hueOf(one)])]),
+      () => [
+        ...shown.map((track) => {
+          const { colour, dash } = curveStyle(hueOf(track));
+          const dashed = dash.length > 0 ? 'dashed' : '';
+          return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), track.label);
+        }),
+        ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
+      ],
+    );
     setAttribute(
       this.area,
       'aria-label',
@@ -215,7 +220,7 @@ function marksOf(state: State): Mark[] {
       label,
       place: [pose.x_m, pose.y_m, pose.z_m],
       axes: bodyAxes(pose),
-      colour: curveStyle(trackHue(track)).colour,
+      colour: trackColour(track),
       truth: name === '',
       letter: name === '' ? letter : '',
       truthPlace: name === '' || truth === null ? null : [truth.x_m, truth.y_m, truth.z_m],

@@ -12,9 +12,10 @@ import {
   zoomedAt,
 } from '../../store/plots/path_frame';
 import type { State } from '../../store/state';
+import { hueOf } from '../../store/plots/plot_specs';
 import type { Track } from '../../store/tracks';
 import { tracksOf } from '../../store/tracks';
-import { curveStyle, trackHue } from '../colours';
+import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, setText } from '../dom';
 import { paint } from '../paint';
 
@@ -136,7 +137,7 @@ export class PathPlot {
     for (const path of this.paths) paintPath(pen, path, frame, size);
     for (const { x, y, track } of this.marks) {
       const [px, py] = toPixels(frame, size, [x, y]);
-      pen.fillStyle = paint(curveStyle(trackHue(track)).colour);
+      pen.fillStyle = paint(trackColour(track));
       pen.beginPath();
       pen.arc(px, py, track.name === '' ? 5 : 3.5, 0, 2 * Math.PI);
       pen.fill();
@@ -255,7 +256,7 @@ function paintPath(
   frame: PathFrame,
   size: Size,
 ): void {
-  const { colour, width_px, dash } = curveStyle(trackHue(track));
+  const { colour, width_px, dash } = curveStyle(hueOf(track));
   pen.strokeStyle = paint(colour);
   pen.lineWidth = width_px;
   pen.setLineDash(dash);
