@@ -5,7 +5,7 @@ import { after, before, describe } from 'node:test';
 import { browserMissing, openBrowser } from './support/browser.mjs';
 import { Dashboard } from './support/dashboard.mjs';
 import { flyPair, kPair } from './support/flights.mjs';
-import { serverMissing } from './support/server.mjs';
+import { getJson, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -247,6 +247,35 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await page.getByRole('button', { name: 'Show truth' }).click();
     await dashboard.until(() => document.querySelector('[data-panel=plot3d]').dataset.tracks === '2');
     assert.equal(await tracks(), '2');
+  });
+
+  step('compare two alignments of an estimate, each with its scale', async () => {
+    const { estimators } = await getJson(stage.server, `/runs/${kSlow}/metrics`);
+    const scale = (mode) => estimators.drifts.alignments[mode].scale.toFixed(4);
+    const wanted = [`drifts by init_scale, scale ${scale('init_scale')}`, `drifts by sim3, scale ${scale('sim3')}`];
+    await page.locator('#compared').selectOption('sim3');
+    await dashboard.until(() => document.querySelector('[data-panel=plot3d]').dataset.tracks === '3');
+    const legend = (view) =>
+      view.page.locator('[data-panel=plots] .alignment-legend span').allInnerTexts();
+    await page.locator('[data-panel=plots] .alignment-legend').waitFor();
+    assert.deepEqual(await legend(dashboard), wanted);
+    const columns = await getJson(stage.server, `/runs/${kSlow}/trajectories/drifts?format=json&alignment=sim3`);
+    const { frame } = await dashboard.playback();
+    const y_m = columns.y_m[columns.frame.indexOf(frame)].toFixed(1);
+    const readouts = page.locator('[data-panel=plots] [data-axis=y_m] .readout');
+    assert.equal((await readouts.allInnerTexts())[2].replace('−', '-'), y_m);
+    const { scale: scales } = await dashboard.errors();
+    assert.deepEqual(scales.filter((_, i) => i % 3 === 0), [scale('init_scale'), scale('sim3')]);
+    await dashboard.screenshot('compared_alignments_1600x900');
+    await page.locator('.tab[data-group=path]').click();
+    await page.locator('.path-plot').first().waitFor();
+    await dashboard.screenshot('compared_paths_1600x900');
+    await untilWritten('compare');
+    await elsewhere(await page.evaluate(() => location.hash), async (other) => {
+      await other.page.locator('[data-panel=plots] .alignment-legend').waitFor();
+      await other.until((count) => document.querySelectorAll('[data-panel=plots] .alignment-legend span').length === count, 2);
+      assert.deepEqual(await legend(other), wanted);
+    });
   });
 
   step('logged no error in the page', () => {

@@ -11,6 +11,8 @@ import type { Span } from './time_window';
 
 export interface LinkChoices {
   alignment: string;
+  /** A second alignment; null = none. */
+  compared: string | null;
   /** Group of the plots over time; null = the first. */
   plotGroup: string | null;
   /** The part of the clock's time that the plots show; null = all. */
@@ -30,6 +32,7 @@ const kLongestName = 200;
 export function usualChoices(): LinkChoices {
   return {
     alignment: kDefaultAlignment,
+    compared: null,
     plotGroup: null,
     window_s: null,
     clock: kUsualClock,
@@ -40,9 +43,10 @@ export function usualChoices(): LinkChoices {
 }
 
 export function writeChoices(choices: LinkChoices, fields: URLSearchParams): void {
-  const { alignment, plotGroup, window_s, clock, debugOf, imageErrorOf, zooms } = choices;
+  const { alignment, compared, plotGroup, window_s, clock, debugOf, imageErrorOf, zooms } = choices;
   const { range, speed, loop } = clock;
   if (alignment !== kDefaultAlignment) fields.set('align', alignment);
+  if (compared !== null) fields.set('compare', compared);
   if (plotGroup !== null) fields.set('plots', plotGroup);
   if (window_s !== null) fields.set('window', window_s.map((t_s) => t_s.toFixed(3)).join(','));
   if (range !== null) {
@@ -71,6 +75,7 @@ export function readChoices(fields: URLSearchParams, problems: string[]): LinkCh
   const range = read('range', secondsPair);
   return {
     alignment: read('align', word) ?? usual.alignment,
+    compared: read('compare', word),
     plotGroup: read('plots', word),
     window_s: read('window', secondsPair),
     clock: {

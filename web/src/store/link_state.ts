@@ -76,12 +76,14 @@ export function openLink(link: ReadPermalink, linked: Linked): void {
   state.zooms = new Map(zooms);
   store.change('run', 'rows', 'plots', 'pictures', 'zoom', 'cameras');
   if (choices.alignment !== state.alignment) void alignment.choose(choices.alignment);
+  if (choices.compared !== state.compared) void alignment.compare(choices.compared);
 }
 
 function choicesOf(state: State): LinkChoices {
-  const { alignment, plotGroup, plotWindow, clock, debugOf, imageErrorOf, zooms } = state;
+  const { alignment, compared, plotGroup, plotWindow, clock, debugOf, imageErrorOf, zooms } = state;
   return {
     alignment,
+    compared,
     plotGroup,
     window_s: plotWindow?.span_s ?? null,
     clock: clock ?? kUsualClock,

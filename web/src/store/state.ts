@@ -75,6 +75,8 @@ export class State {
   colours: ReadonlyMap<string, TrackColour> = new Map();
   /** Chosen by the viewer; shown once a run is scored. */
   alignment: string = kDefaultAlignment;
+  /** A second one to be compared with it; null = none. */
+  compared: string | null = null;
   /** Of the main run; read while their plots are shown. */
   sensors: SensorSamples | null = null;
   /** Why the sensors' samples cannot be read. */

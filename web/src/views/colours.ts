@@ -42,6 +42,9 @@ const kCurveWidth_px = 1.25;
 /** Of truths by the position of the run; of estimates when the colours begin again. */
 const kDashes = [[], [7, 4], [2, 3], [9, 3, 2, 3]] as const;
 
+/** Of an estimate by a second alignment. */
+const kSecondDash = [4, 3] as const;
+
 export interface CurveStyle {
   colour: string;
   width_px: number;
@@ -61,13 +64,18 @@ export function curveStyle(hue: CurveHue): CurveStyle {
       return {
         ...thin,
         colour: hue.chosen === undefined ? estimateColour(hue.colour) : chosenColour(hue.chosen),
-        dash: dashOf(Math.floor(hue.colour / kEstimateColours.length)),
+        dash: hue.second === true ? [...kSecondDash] : dashOf(roundOf(hue.colour)),
       };
     case 'run':
       return { ...thin, colour: cyclic(kNeutralColours, hue.order) };
     case 'axis':
       return { ...thin, colour: cyclic(kAxisColours, hue.axis) };
   }
+}
+
+/** How often the colours have begun again. */
+function roundOf(colour: number): number {
+  return Math.floor(colour / kEstimateColours.length);
 }
 
 function dashOf(round: number): number[] {

@@ -59,6 +59,7 @@ describe('permalink', () => {
       sideBySide: false,
       choices: {
         alignment: 'sim3',
+        compared: 'se3',
         plotGroup: 'errors',
         window_s: [-1.5, 20.25],
         clock: { range: { begin_ns: 1_500_000_000, end_ns: 9e9 }, speed: -0.5, loop: true },
@@ -111,6 +112,7 @@ describe('permalink', () => {
     ['t', '4x'],
     ['align', 'Sim(3)'],
     ['plots', '<script>'],
+    ['compare', 'a b'],
     ['window', '3,1'],
     ['window', '1'],
     ['range', '1,Infinity'],

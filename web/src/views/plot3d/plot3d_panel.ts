@@ -8,6 +8,7 @@ import { hueOf } from '../../store/plots/plot_specs';
 import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
+import { scaleText } from '../alignment_legend';
 import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
@@ -117,18 +118,17 @@ export class Plot3dPanel implements View {
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
     const estimates = shown.some(({ name }) => name !== '');
     const labels = shown.map(({ label }) => label);
-    rebuild(
-      this.legend,
-      JSON.stringify([alignment, shown.map((one) => [one.label, hueOf(one)])]),
-      () => [
-        ...shown.map((track) => {
-          const { colour, dash } = curveStyle(hueOf(track));
-          const dashed = dash.length > 0 ? 'dashed' : '';
-          return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), track.label);
-        }),
-        ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
-      ],
-    );
+    const named = shown.map((track) => ({
+      name: `${track.label}${scaleText(track, state.compared)}`,
+      ...curveStyle(hueOf(track)),
+    }));
+    rebuild(this.legend, JSON.stringify([alignment, named]), () => [
+      ...named.map(({ name, colour, dash }) => {
+        const dashed = dash.length > 0 ? 'dashed' : '';
+        return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), name);
+      }),
+      ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
+    ]);
     setAttribute(
       this.area,
       'aria-label',

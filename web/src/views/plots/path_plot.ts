@@ -14,7 +14,7 @@ import {
 import type { State } from '../../store/state';
 import { hueOf } from '../../store/plots/plot_specs';
 import type { Track } from '../../store/tracks';
-import { tracksOf } from '../../store/tracks';
+import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
 import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, setText } from '../dom';
 import { paint } from '../paint';
@@ -83,10 +83,9 @@ export class PathPlot {
 
   /** Takes the tracks as they are now. */
   draw(state: State): void {
-    this.paths = tracksOf(state).flatMap((track) => {
-      const { run, name, shown } = track;
-      const table = name === '' ? run.data.truth : run.shownEstimate(name)?.table;
-      if (!shown || table === undefined) return [];
+    this.paths = drawnTracks(state).flatMap((track) => {
+      const table = tableOf(track);
+      if (table === undefined) return [];
       const { across, up } = this.axes;
       return { track, x: table.column(across), y: table.column(up), t_ns: table.column('t_ns') };
     });

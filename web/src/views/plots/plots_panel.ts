@@ -9,6 +9,7 @@ import { windowAt, zoomed } from '../../store/time_window';
 import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
+import { AlignmentLegend } from '../alignment_legend';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
@@ -42,6 +43,9 @@ type Group = (typeof kGroups)[number]['name'];
 /** Groups that are panels of their own as well. */
 type PanelGroup = 'errors' | 'image';
 
+/** Groups that depend on the alignment of the estimates. */
+const kByAlignment: readonly Group[] = ['pose', 'path', 'errors'];
+
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
 
@@ -64,6 +68,7 @@ export class PlotsPanel implements View {
     'data-role': 'alignment',
     title: 'Alignment of the estimates to the truth (selected above the errors)',
   });
+  private readonly scales = new AlignmentLegend();
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
@@ -92,7 +97,7 @@ export class PlotsPanel implements View {
     );
     if (only === null) this.panel.tools.append(this.tabs);
     this.panel.tools.append(this.files, this.alignment, this.hoverTime);
-    this.panel.body.append(this.grid, this.statuses.root);
+    this.panel.body.append(this.scales.root, this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
     new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
@@ -100,7 +105,7 @@ export class PlotsPanel implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     if (changed.has('run') || changed.has('rows') || changed.has('sensors')) this.drawSoon();
-    if (changed.has('plots')) this.drawSoon();
+    if (changed.has('plots') || changed.has('metrics')) this.drawSoon();
     if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
@@ -143,6 +148,7 @@ export class PlotsPanel implements View {
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
+    this.scales.draw(state, kByAlignment.includes(this.group));
     const span_s = this.window_s ?? this.whole();
     for (const plot of this.plots) plot.draw(span_s);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
@@ -259,8 +265,7 @@ export class PlotsPanel implements View {
     const aligned = this.context.store.state.watched.filter(
       ({ run }) => (run?.estimators.length ?? 0) > 0,
     );
-    const byAlignment: readonly Group[] = ['pose', 'path', 'errors'];
-    if (!byAlignment.includes(this.group) || aligned.length === 0) return '';
+    if (!kByAlignment.includes(this.group) || aligned.length === 0) return '';
     return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
 
