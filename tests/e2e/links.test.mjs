@@ -119,7 +119,7 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await button(kSlow, 'strays').click();
     await page.getByLabel('Choose the colour of B flat').click();
     await dashboard.screenshot('track_colour_1600x900');
-    await page.getByLabel('Cyan for B flat').click();
+    await page.getByLabel('Petrol for B flat').click();
     await page.getByLabel('Choose the colour of A drifts').click();
     await page.getByLabel('Any colour for A drifts').fill('#7a3b00');
     await button(kFast, 'truth').click();

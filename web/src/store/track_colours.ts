@@ -6,7 +6,7 @@ import type { Store } from './state';
 export type TrackColour = string;
 
 /** In the order of styles/themes.css, --estimate-1 and so on. */
-export const kPaletteNames = ['Blue', 'Teal', 'Amber', 'Violet', 'Cyan', 'Pink'] as const;
+export const kPaletteNames = ['Blue', 'Teal', 'Amber', 'Violet', 'Petrol', 'Magenta'] as const;
 
 const kKey = 'overfly.track-colours';
 const kMostKept = 200;
