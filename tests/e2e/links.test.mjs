@@ -278,6 +278,45 @@ describe('links', { skip, timeout: 600_000 }, () => {
     });
   });
 
+  step('do not move the layout while runs are opened, added and exchanged', async () => {
+    await page.addInitScript(() => {
+      window.jumps = [];
+      const keep = (list) => window.jumps.push(...list.getEntries());
+      new PerformanceObserver(keep).observe({ type: 'layout-shift', buffered: true });
+    });
+    await page.goto('about:blank');
+    await dashboard.open(`${stage.server.url}/#layout=fly`);
+    await page.locator('.run').first().waitFor();
+    await dashboard.untilSettled();
+    // By the address: the browser does not count as jumps what follows a click.
+    for (const [what, main, hash] of [
+      ['a run', kSlow, `run=${kSlow}&t=2`],
+      ['a second run', kSlow, `run=${kSlow}&run=${kFast}&t=2`],
+      ['the other as the main one', kFast, `run=${kSlow}&run=${kFast}&main=${kFast}&t=3`],
+      ['one run again', kFast, `run=${kFast}&t=3`],
+      ['the other run', kSlow, `run=${kSlow}&t=3`],
+    ]) {
+      await page.evaluate((link) => {
+        window.jumps = [];
+        location.hash = link;
+      }, `layout=fly&${hash}`);
+      await dashboard.until(
+        (id) => document.querySelector('.run[aria-current=true]')?.dataset.run === id,
+        main,
+      );
+      await dashboard.untilSameInstant(kPanels);
+      await dashboard.untilSettled();
+      const jumps = await page.evaluate(() =>
+        window.jumps.map(({ value, sources }) => [
+          value,
+          ...sources.map(({ node }) => node?.className ?? node?.parentElement?.className ?? ''),
+        ]),
+      );
+      const jumped = jumps.reduce((sum, [value]) => sum + value, 0);
+      assert.ok(jumped < 0.02, `${what}: layout shift ${jumped} of ${JSON.stringify(jumps)}`);
+    }
+  });
+
   step('logged no error in the page', () => {
     assert.deepEqual(dashboard.complaints, []);
   });
