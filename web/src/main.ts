@@ -59,6 +59,7 @@ import { Store } from './store/state';
 import { StudyDesk } from './store/studies/study_desk';
 import { SweepDesk } from './store/sweeps/sweep_desk';
 import { Themes } from './store/themes';
+import { TrackColours } from './store/track_colours';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
 import { followAddress } from './views/address_bar';
 import { applyTheme } from './views/paint';
@@ -131,6 +132,7 @@ const layouts = new Layouts(store, notices, storage, {
 });
 const layoutExchange = new LayoutExchange(layouts, notices);
 const themes = new Themes(store, storage, applyTheme);
+const colours = new TrackColours(store, storage);
 const smoothing = new LogSmoothing(store, rest, later, newKey);
 
 const context = {
@@ -160,6 +162,7 @@ const context = {
   layouts,
   layoutExchange,
   themes,
+  colours,
 };
 scene.apply(store.state.scene);
 layouts.applyLook();

@@ -57,7 +57,10 @@ export interface ScoredEstimate {
   warnings?: string[];
   alignments?: Record<string, AlignmentErrors>;
   offsets?: ScoredOffsets;
-  series?: Record<string, PoseSeries & { axis_errors: SeriesTable; errors: SeriesTable; scale: SeriesTable }>;
+  series?: Record<
+    string,
+    PoseSeries & { axis_errors: SeriesTable; errors: SeriesTable; scale: SeriesTable }
+  >;
   /** Why it could not be read or matched. */
   error?: { code: string; message: string };
 }

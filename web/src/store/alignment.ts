@@ -1,9 +1,10 @@
 // The alignment of the estimates: chosen by the viewer, computed by the server, used in all views.
 import type { RestClient } from '../connection/rest_client';
-import { RestError } from '../connection/rest_client';
+import { RestError } from '../connection/rest_error';
 import type { Metrics } from '../protocol/rest_types';
 import { kDefaultAlignment } from './error_table';
 import type { Notices } from './notices';
+import type { EstimateRows } from './run_data';
 import { estimateRows } from './run_data';
 import type { Session } from './session';
 import { shownAlignment } from './state';
@@ -37,9 +38,18 @@ export class Alignment {
     await this.refresh();
   }
 
-  /** Draws every watched run by the chosen alignment, where its score permits. */
+  /** Draws the estimates a second time, by another alignment; null = no longer. */
+  async compare(mode: string | null): Promise<void> {
+    this.store.state.compared = mode;
+    this.tried.clear();
+    this.store.change('metrics', 'rows');
+    await this.refresh();
+  }
+
+  /** Draws every watched run by the chosen alignments, where its score permits. */
   async refresh(): Promise<void> {
-    await Promise.all(this.store.state.watched.map((watched) => this.refreshRun(watched)));
+    const { watched } = this.store.state;
+    await Promise.all(watched.flatMap((one) => [this.refreshRun(one), this.refreshCompared(one)]));
   }
 
   private async refreshRun(watched: WatchedRun): Promise<void> {
@@ -55,16 +65,40 @@ export class Alignment {
     const attempt = `${id}/${mode}`;
     if (this.tried.has(attempt)) return;
     this.tried.add(attempt);
-    const names = watched.run?.estimators ?? Object.keys(metrics.estimators ?? {});
-    const placed = await Promise.all(
-      names.map(async (name) => [name, await this.place(id, name, mode)] as const),
-    );
+    const estimates = await this.placed(watched, mode);
     if (state.watchedRun(id) !== watched || state.alignment !== mode) return;
-    const estimates = new Map(placed.flatMap(([name, rows]) => (rows ? [[name, rows]] : [])));
     if (estimates.size === 0) return;
     this.tried.delete(attempt);
     watched.aligned = { mode, estimates };
     this.apply(id, mode);
+  }
+
+  private async refreshCompared(watched: WatchedRun): Promise<void> {
+    const { state } = this.store;
+    const { metrics, id, data, compared } = watched;
+    const mode = state.compared;
+    if (mode === (compared?.mode ?? null)) return;
+    const attempt = `${id}/${mode ?? ''} compared`;
+    if (mode === null || mode === kDefaultAlignment) {
+      watched.compared = mode === null ? null : { mode, estimates: data.estimates };
+      this.store.change('rows', 'metrics');
+    } else if (canBeDrawn(metrics, mode) && !this.tried.has(attempt)) {
+      this.tried.add(attempt);
+      const estimates = await this.placed(watched, mode);
+      if (state.watchedRun(id) !== watched || state.compared !== mode) return;
+      this.tried.delete(attempt);
+      watched.compared = { mode, estimates };
+      this.store.change('rows', 'metrics');
+    }
+  }
+
+  private async placed(watched: WatchedRun, mode: string): Promise<Map<string, EstimateRows>> {
+    const { id, metrics } = watched;
+    const names = watched.run?.estimators ?? Object.keys(metrics?.estimators ?? {});
+    const placed = await Promise.all(
+      names.map(async (name) => [name, await this.place(id, name, mode)] as const),
+    );
+    return new Map(placed.flatMap(([name, rows]) => (rows ? [[name, rows]] : [])));
   }
 
   private apply(run: string, mode: string): void {

@@ -1,6 +1,6 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
-import { fieldErrorsOf } from '../connection/rest_client';
+import { fieldErrorsOf } from '../connection/rest_error';
 import type { JsonObject, Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';

@@ -31,15 +31,29 @@ export class Player {
    * picture of exactly that instant. Outside of this run seeks to the time itself.
    */
   seekTime(t_ns: number): void {
-    const { data, offset_ns, runId } = this.store.state;
-    const stamps = data.truth.column('t_ns');
-    const row = nearestIndex(stamps, t_ns - offset_ns);
-    const off_ns = Math.abs((stamps[row] ?? NaN) - (t_ns - offset_ns));
-    if (row < 0 || runId === null || !(off_ns < kSecond_ns)) {
+    const { data, runId } = this.store.state;
+    const row = this.rowNear(t_ns);
+    if (row === null || runId === null) {
       this.command({ type: 'seek', t_ns: Math.round(t_ns) });
     } else {
       this.command({ type: 'seek', frame: data.truth.at('frame', row), run: runId });
     }
+  }
+
+  /** The time to which seekTime() moves the clock. */
+  seekTarget_ns(t_ns: number): number {
+    const { data, offset_ns } = this.store.state;
+    const row = this.rowNear(t_ns);
+    return row === null ? t_ns : data.truth.at('t_ns', row) + offset_ns;
+  }
+
+  /** Row of the main run's frame nearest to a time of the clock; null outside of this run. */
+  private rowNear(t_ns: number): number | null {
+    const { data, offset_ns } = this.store.state;
+    const stamps = data.truth.column('t_ns');
+    const row = nearestIndex(stamps, t_ns - offset_ns);
+    const off_ns = Math.abs((stamps[row] ?? NaN) - (t_ns - offset_ns));
+    return row >= 0 && off_ns < kSecond_ns ? row : null;
   }
 
   seekBy(delta_ns: number): void {

@@ -3,6 +3,8 @@ import type { ConnectionState, StreamClient, StreamListener } from '../connectio
 import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../protocol/messages';
 import type { PictureMessage } from '../protocol/parse';
 import type { StreamedRun } from '../protocol/rest_types';
+import type { ClockSettings } from './clock_settings';
+import { kUsualClock, settingCommands } from './clock_settings';
 import type { Notices } from './notices';
 import type { Decode } from './pictures/picture_decoder';
 import type { OpenVideo } from './pictures/video_decoding';
@@ -23,8 +25,8 @@ export const kMostRuns = 16;
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
   private readonly decoders = new Map<string, PictureDecoder>();
-  /** Where to seek when the server sends the playback of the main run. */
-  private pendingSeek_ns: number | null = null;
+  /** Where and how to begin when the server has sent where all runs are. */
+  private pending: { t_ns: number | null; settings: ClockSettings | null } | null = null;
   /**
    * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
    */
@@ -64,8 +66,14 @@ export class Session implements StreamListener {
    * Shows exactly these runs.
    * @param main  null = the first
    * @param t_ns  of the clock; null = where it is, or the server's default position
+   * @param settings  of the clock; null = as they are
    */
-  showRuns(runs: readonly ShownRun[], main: string | null, t_ns: number | null): void {
+  showRuns(
+    runs: readonly ShownRun[],
+    main: string | null,
+    t_ns: number | null,
+    settings: ClockSettings | null = null,
+  ): void {
     const { state } = this;
     for (const { id } of [...state.watched]) {
       if (!runs.some((run) => run.id === id)) this.leave(id);
@@ -74,9 +82,11 @@ export class Session implements StreamListener {
       state.clock = null;
       state.wantedSpeed = null;
       this.livePlace_ns = null;
-      this.pendingSeek_ns = t_ns;
-    } else if (t_ns !== null) {
-      this.command({ type: 'seek', t_ns });
+      this.pending = { t_ns, settings };
+    } else {
+      const now = state.clock ?? kUsualClock;
+      for (const command of settingCommands(settings ?? now, now)) this.command(command);
+      if (t_ns !== null) this.command({ type: 'seek', t_ns });
     }
     for (const { id, offset_ns } of runs) {
       if (state.watchedRun(id) === undefined) this.watch(id, offset_ns);
@@ -108,6 +118,7 @@ export class Session implements StreamListener {
       return;
     }
     this.leave(id);
+    this.begin();
     this.subscribe();
     this.changedRuns();
   }
@@ -132,9 +143,12 @@ export class Session implements StreamListener {
 
   /** Shows or hides a track in the plots. @param name  of the estimator; '' = the truth */
   showTrack(id: string, name: string, shown: boolean): void {
-    const hidden = this.state.watchedRun(id)?.hidden;
-    if (shown) hidden?.delete(name);
-    else hidden?.add(name);
+    const watched = this.state.watchedRun(id);
+    if (watched === undefined) return;
+    const hidden = new Set(watched.hidden);
+    if (shown) hidden.delete(name);
+    else hidden.add(name);
+    watched.hidden = hidden;
     this.store.change('run', 'rows');
   }
 
@@ -230,9 +244,7 @@ export class Session implements StreamListener {
         commands.push({ type: 'align', run: one.id, mode: shownAlignment(one) });
       }
     }
-    if (clock.speed !== 1) commands.push({ type: 'speed', value: clock.speed });
-    if (clock.loop) commands.push({ type: 'loop', value: true });
-    if (clock.range !== null) commands.push({ type: 'range', ...clock.range });
+    commands.push(...settingCommands(clock, kUsualClock));
     this.livePlace_ns = clock.live ? clock.t_ns : null;
     if (!clock.live) {
       commands.push({ type: 'seek', t_ns: clock.t_ns });
@@ -249,6 +261,7 @@ export class Session implements StreamListener {
     watched.run = state.runs?.find((run) => run.id === id) ?? null;
     watched.offset_ns = offset_ns;
     state.watched.push(watched);
+    state.plotWindow = null;
     state.main ??= watched;
     this.decoders.set(id, this.decoderOf(watched));
     this.client?.watch(id, offset_ns);
@@ -278,6 +291,7 @@ export class Session implements StreamListener {
     this.saidOfWorld.delete(id);
     for (const { bitmap } of watched.pictures.values()) bitmap.close();
     state.watched.splice(state.watched.indexOf(watched), 1);
+    state.plotWindow = null;
     if (state.main === watched) state.main = state.watched[0] ?? null;
     if (state.main === null) this.subscribed = kNothingSubscribed;
   }
@@ -345,9 +359,19 @@ export class Session implements StreamListener {
     const place_ns = this.livePlace_ns;
     this.livePlace_ns = null;
     if (place_ns !== null && !clock.live) this.command({ type: 'seek', t_ns: place_ns });
-    if (this.pendingSeek_ns === null) return;
-    const t_ns = this.pendingSeek_ns;
-    this.pendingSeek_ns = null;
+    this.begin();
+  }
+
+  /** Before all runs are there, the time would be limited to those that are. */
+  private begin(): void {
+    const { clock, watched } = this.state;
+    const { pending } = this;
+    if (pending === null || clock === null) return;
+    if (watched.some(({ instant }) => instant === null)) return;
+    this.pending = null;
+    const { t_ns, settings } = pending;
+    for (const command of settingCommands(settings ?? clock, clock)) this.command(command);
+    if (t_ns === null) return;
     this.command({ type: 'seek', t_ns });
     if (clock.playing) this.command({ type: 'pause' });
   }

@@ -35,6 +35,8 @@ import { initialStudyPage } from './studies/study_page';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
+import type { PlotWindow } from './time_window';
+import type { TrackColour } from './track_colours';
 import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 
 export interface Notice {
@@ -72,8 +74,12 @@ export class State {
   clock: Clock | null = null;
   /** Requested and not confirmed yet. */
   wantedSpeed: number | null = null;
+  /** Colours that the viewer gave to tracks (track_colours.ts). */
+  colours: ReadonlyMap<string, TrackColour> = new Map();
   /** Chosen by the viewer; shown once a run is scored. */
   alignment: string = kDefaultAlignment;
+  /** A second one to be compared with it; null = none. */
+  compared: string | null = null;
   /** Of the main run; read while their plots are shown. */
   sensors: SensorSamples | null = null;
   /** Why the sensors' samples cannot be read. */
@@ -89,6 +95,14 @@ export class State {
   /** What was asked about the pixel there, and the answer or why there is none. */
   pixel: { question: PixelQuestion; answer: PixelAnswer | string } | null = null;
   scene: SceneLook = usualLook();
+  /** Group of plots that the panel of all of them shows; null = the first. */
+  plotGroup: string | null = null;
+  /** The part of the clock's time that plots show; null = all. */
+  plotWindow: PlotWindow | null = null;
+  /** The estimator whose debug images are shown; null = the first. */
+  debugOf: string | null = null;
+  /** The estimator whose view is compared; null = the camera's image itself. */
+  imageErrorOf: string | null = null;
   notices: Notice[] = [];
   helpOpen = false;
   paletteOpen = false;
@@ -189,6 +203,7 @@ const kTopicNames = [
   'zoom',
   'hover',
   'scene',
+  'plots',
   'cameras',
   'sensors',
   'notices',

@@ -1,5 +1,9 @@
 // The tracks of the watched runs: the true one and one of each estimator.
+import { kDefaultAlignment } from './error_table';
 import type { State } from './state';
+import type { Table } from './table';
+import type { TrackColour } from './track_colours';
+import { colourKey } from './track_colours';
 import type { WatchedRun } from './watched_run';
 
 export interface Track {
@@ -12,9 +16,13 @@ export interface Track {
   letter: string;
   /** Index of the estimate's colour; of the truth: of its run's first estimate. */
   colour: number;
+  /** Given by the viewer instead; null = none. */
+  chosen: TrackColour | null;
   /** Position of its run among the watched ones. */
   order: number;
   shown: boolean;
+  /** Of the estimate drawn a second time, by another alignment: that alignment. */
+  by?: string;
 }
 
 /** 'A', 'B', ... by the order of watching; '' for the only run that is watched. */
@@ -23,7 +31,7 @@ export function runLetter({ watched }: Pick<State, 'watched'>, run: WatchedRun):
 }
 
 /** All tracks, run by run; each run's truth comes first. */
-export function tracksOf(state: Pick<State, 'watched'>): Track[] {
+export function tracksOf(state: Pick<State, 'watched' | 'colours'>): Track[] {
   let colour = 0;
   return state.watched.flatMap((run, order) => {
     const letter = runLetter(state, run);
@@ -35,8 +43,40 @@ export function tracksOf(state: Pick<State, 'watched'>): Track[] {
       letter,
       label: `${prefix}${name === '' ? 'truth' : name}`,
       colour: name === '' ? colour : colour++,
+      chosen: state.colours.get(colourKey(run.id, name)) ?? null,
       order,
       shown: !run.hidden.has(name),
     }));
   });
+}
+
+/** The tracks that are drawn: those shown, then estimates by the alignment they are compared with. */
+export function drawnTracks(state: Pick<State, 'watched' | 'colours'>): Track[] {
+  const shown = shownTracks(state);
+  return [...shown, ...shown.flatMap(secondOf)];
+}
+
+export function shownTracks(state: Pick<State, 'watched' | 'colours'>): Track[] {
+  return tracksOf(state).filter(({ shown }) => shown);
+}
+
+/** The track by the second alignment; none of a truth, or while there is no second one. */
+export function secondOf(track: Track): Track[] {
+  const { run, name, label } = track;
+  if (name === '' || run.compared?.estimates.has(name) !== true) return [];
+  const by = run.compared.mode;
+  return [{ ...track, by, label: `${label} by ${by}` }];
+}
+
+/** Where a track was; undefined while nothing is known of it. */
+export function tableOf({ run, name, by }: Track): Table | undefined {
+  if (name === '') return run.data.truth;
+  const rows = by === undefined ? run.shownEstimate(name) : run.compared?.estimates.get(name);
+  return rows?.table;
+}
+
+/** Scale of an estimate by the alignment of its track; null if it is not scored. */
+export function scaleOf({ run, name, by }: Track): number | null {
+  const mode = by ?? run.aligned?.mode ?? kDefaultAlignment;
+  return run.metrics?.estimators?.[name]?.alignments?.[mode]?.scale ?? null;
 }

@@ -47,6 +47,8 @@ export class WatchedRun {
   /** Time of the clock at its beginning, as requested. */
   offset_ns = 0;
   aligned: AlignedEstimates | null = null;
+  /** By a second alignment, drawn beside the first; null = none. */
+  compared: AlignedEstimates | null = null;
   /** Empty until its manifest was read. */
   cameras: CameraInfo[] = [];
   /** The camera whose images each estimator gets. */
@@ -58,7 +60,7 @@ export class WatchedRun {
   rates = new Map<string, PictureRate>();
   readonly meter = new PictureMeter();
   /** Tracks that the viewer has hidden: names of estimators, '' = the truth. */
-  readonly hidden = new Set<string>();
+  hidden: ReadonlySet<string> = new Set();
 
   constructor(readonly id: string) {}
 

@@ -2,6 +2,8 @@
 // Canvases need paint().
 
 import type { CurveHue } from '../store/plots/plot_specs';
+import { hueOf } from '../store/plots/plot_specs';
+import type { TrackColour } from '../store/track_colours';
 import type { Track } from '../store/tracks';
 
 export const kTruthColour = 'var(--truth)';
@@ -20,6 +22,16 @@ export function estimateColour(index: number): string {
   return cyclic(kEstimateColours, index);
 }
 
+/** A colour that the viewer chose, as in a style sheet. */
+export function chosenColour(colour: TrackColour): string {
+  return colour.length === 1 ? estimateColour(Number(colour) - 1) : `#${colour}`;
+}
+
+/** The colour of a track in plots and tables. */
+export function trackColour(track: Track): string {
+  return curveStyle(hueOf(track)).colour;
+}
+
 /** Curves of which neither truth nor an estimate is meant. */
 const kNeutralColours = ['var(--neutral-1)', 'var(--neutral-2)', 'var(--neutral-3)'] as const;
 const kAxisColours = ['var(--axis-x)', 'var(--axis-y)', 'var(--axis-z)'] as const;
@@ -27,8 +39,11 @@ const kAxisColours = ['var(--axis-x)', 'var(--axis-y)', 'var(--axis-z)'] as cons
 // The truth lies below the estimates and stays visible where they agree.
 const kTruthWidth_px = 3;
 const kCurveWidth_px = 1.25;
-/** By the position of the run among those that are watched. */
+/** Of truths by the position of the run; of estimates when the colours begin again. */
 const kDashes = [[], [7, 4], [2, 3], [9, 3, 2, 3]] as const;
+
+/** Of an estimate by a second alignment. */
+const kSecondDash = [4, 3] as const;
 
 export interface CurveStyle {
   colour: string;
@@ -41,12 +56,16 @@ export function curveStyle(hue: CurveHue): CurveStyle {
   switch (hue.kind) {
     case 'truth':
       return {
-        colour: kTruthColour,
+        colour: hue.chosen === undefined ? kTruthColour : chosenColour(hue.chosen),
         width_px: hue.order === 0 ? kTruthWidth_px : kTruthWidth_px / 2,
-        dash: [...(kDashes[hue.order % kDashes.length] ?? [])],
+        dash: dashOf(hue.order),
       };
     case 'estimate':
-      return { ...thin, colour: estimateColour(hue.colour) };
+      return {
+        ...thin,
+        colour: hue.chosen === undefined ? estimateColour(hue.colour) : chosenColour(hue.chosen),
+        dash: hue.second === true ? [...kSecondDash] : dashOf(roundOf(hue.colour)),
+      };
     case 'run':
       return { ...thin, colour: cyclic(kNeutralColours, hue.order) };
     case 'axis':
@@ -54,8 +73,13 @@ export function curveStyle(hue: CurveHue): CurveStyle {
   }
 }
 
-export function trackHue({ name, order, colour }: Track): CurveHue {
-  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
+/** How often the colours have begun again. */
+function roundOf(colour: number): number {
+  return Math.floor(colour / kEstimateColours.length);
+}
+
+function dashOf(round: number): number[] {
+  return [...(kDashes[round % kDashes.length] ?? [])];
 }
 
 function cyclic(colours: readonly string[], index: number): string {

@@ -19,7 +19,7 @@ import type { Track } from '../store/tracks';
 import { tracksOf } from '../store/tracks';
 import type { WatchedRun } from '../store/watched_run';
 import { copyText } from './clipboard';
-import { estimateColour, kStateColours } from './colours';
+import { kStateColours, trackColour } from './colours';
 import { h, rebuild, setAttribute, setText } from './dom';
 import type { Panel } from './panel';
 import { frameOf, makePanel } from './panel';
@@ -39,6 +39,7 @@ export class ErrorPanel implements View {
     h('option', { value: '' }, 'Copy'),
     ...kTextFormats.map((format) => h('option', { value: format }, format)),
   );
+  private readonly compared = h('select', { id: 'compared' });
   private readonly table = h('table', { class: 'errors' });
 
   constructor(private readonly context: Context) {
@@ -49,7 +50,12 @@ export class ErrorPanel implements View {
       this.alignment,
       this.copy,
     );
-    this.panel.body.append(this.table);
+    const line = h('label', { class: 'compare-line' }, 'Compare with', this.compared);
+    this.panel.body.append(line, this.table);
+    this.compared.addEventListener('change', () => {
+      const { value } = this.compared;
+      void context.alignment.compare(value === '' ? null : value);
+    });
     this.alignment.addEventListener('change', () => {
       void context.alignment.choose(this.alignment.value);
     });
@@ -76,6 +82,14 @@ export class ErrorPanel implements View {
     );
     if (!shown.includes(state.alignment)) state.alignment = shown[0] ?? state.alignment;
     this.alignment.value = state.alignment;
+    rebuild(this.compared, shown.join(' '), () => [
+      h('option', { value: '' }, 'no other alignment'),
+      ...shown.map((mode) => h('option', { value: mode }, mode)),
+    ]);
+    if (modes.length > 0 && !modes.some((mode) => mode === state.compared)) state.compared = null;
+    this.compared.value = state.compared ?? '';
+    this.compared.disabled = modes.length === 0;
+    this.compared.title = 'A second alignment beside the first: dashed in the plots';
     this.alignment.disabled = modes.length === 0;
     const drawn = state.watched.some(({ metrics }) => canBeDrawn(metrics, state.alignment));
     this.alignment.title = drawn
@@ -94,14 +108,23 @@ export class ErrorPanel implements View {
   }
 
   private draw(state: State): void {
-    const tracks = tracksOf(state).filter(({ name }) => name !== '');
+    const { compared } = state;
+    const modes = compared === null ? [state.alignment] : [state.alignment, compared];
+    const estimates = tracksOf(state).filter(({ name }) => name !== '');
+    const tracks = modes.flatMap((by, i) =>
+      estimates.map((track) =>
+        i === 0 ? track : { ...track, by, label: `${track.label} by ${by}` },
+      ),
+    );
     this.panel.showEmpty(emptyText(state, tracks.length));
     this.table.hidden = tracks.length === 0;
-    const table = joinedTables(state.watched.map((one) => tableOf(one, state.alignment)));
+    const table = joinedTables(
+      modes.flatMap((mode) => state.watched.map((one) => tableOf(one, mode))),
+    );
     const scored = state.watched.some(({ metrics }) => metrics?.estimators !== undefined);
     this.copy.disabled = !scored;
     this.table.classList.toggle('many', tracks.length > 2);
-    const textures = state.watched.map(textureOf);
+    const textures = modes.flatMap(() => state.watched.map(textureOf));
     rebuild(this.table, JSON.stringify([table, tracks.map(headOf), textures]), () => [
       h('thead', {}, headRow(tracks)),
       h(
@@ -138,7 +161,9 @@ export class ErrorPanel implements View {
           'td',
           { class: good ? 'good' : 'bad', title: outcome },
           outcome,
-          good || run === null ? null : this.explainButton(run, name),
+          good || run === null || tracks[i]?.by !== undefined
+            ? null
+            : this.explainButton(run, name),
         );
       }),
     );
@@ -184,13 +209,13 @@ function allMetrics(watched: readonly WatchedRun[]): Metrics {
   return { estimators: Object.fromEntries(entries) };
 }
 
-function headOf({ label, colour }: Track) {
-  return [label, colour];
+function headOf(track: Track) {
+  return [track.label, trackColour(track)];
 }
 
 function headRow(tracks: Track[]): HTMLElement {
-  const heads = tracks.map(({ label, colour }) =>
-    h('th', { scope: 'col', style: `color:${estimateColour(colour)}` }, label),
+  const heads = tracks.map((track) =>
+    h('th', { scope: 'col', style: `color:${trackColour(track)}` }, track.label),
   );
   return h('tr', {}, h('th', {}), ...heads);
 }

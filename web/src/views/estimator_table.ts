@@ -3,7 +3,8 @@ import { kStatusColumns, saidBy, statusRows } from '../store/estimator_status';
 import type { StatusRow } from '../store/estimator_status';
 import { formatTime } from '../store/format';
 import type { State } from '../store/state';
-import { estimateColour, kStateColours } from './colours';
+import { tracksOf } from '../store/tracks';
+import { estimateColour, kStateColours, trackColour } from './colours';
 import { h, rebuild } from './dom';
 
 const kMostLines = 50;
@@ -19,9 +20,10 @@ export class EstimatorTable {
 
   draw(state: State): void {
     const rows = statusRows(state.run, state.statuses);
-    rebuild(this.table, JSON.stringify(rows), () => [
+    const colours = rows.map(({ name }) => colourOf(state, name));
+    rebuild(this.table, JSON.stringify([rows, colours]), () => [
       h('thead', {}, headRow()),
-      h('tbody', {}, ...rows.flatMap((row, index) => bodyRows(row, index))),
+      h('tbody', {}, ...rows.flatMap((row, i) => bodyRows(row, colours[i] ?? ''))),
     ]);
     const lines = saidBy(state.data.log, kMostLines);
     rebuild(this.said, JSON.stringify(lines), () =>
@@ -39,7 +41,8 @@ export class EstimatorTable {
 }
 
 function colourOf(state: State, name: string): string {
-  return estimateColour(Math.max(0, state.run?.estimators.indexOf(name) ?? 0));
+  const track = tracksOf(state).find((one) => one.run === state.main && one.name === name);
+  return track === undefined ? estimateColour(0) : trackColour(track);
 }
 
 function headRow(): HTMLElement {
@@ -49,7 +52,7 @@ function headRow(): HTMLElement {
   return h('tr', {}, h('th', {}), h('th', { scope: 'col' }, 'State'), ...heads);
 }
 
-function bodyRows(row: StatusRow, index: number): HTMLElement[] {
+function bodyRows(row: StatusRow, nameColour: string): HTMLElement[] {
   const colour = kStateColours[row.state] ?? '';
   const cells = row.cells.map(({ column, text, hint, bad }) =>
     h('td', { 'data-column': column, title: hint, class: bad ? 'bad' : '' }, text),
@@ -57,7 +60,7 @@ function bodyRows(row: StatusRow, index: number): HTMLElement[] {
   const main = h(
     'tr',
     { 'data-status-of': row.name },
-    h('th', { scope: 'row', style: `color:${estimateColour(index)}` }, row.name),
+    h('th', { scope: 'row', style: `color:${nameColour}` }, row.name),
     h('td', { 'data-column': 'state', style: `color:${colour}` }, row.state),
     ...cells,
   );

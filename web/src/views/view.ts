@@ -21,6 +21,7 @@ import type { LogBrowser } from '../store/logs/log_browser';
 import type { LogSmoothing } from '../store/logs/log_smoothing';
 import type { LogWorlds } from '../store/logs/log_worlds';
 import type { Themes } from '../store/themes';
+import type { TrackColours } from '../store/track_colours';
 import type { VehicleConnect } from '../store/vehicle/vehicle_connect';
 import type { ScoreDesk } from '../store/scoring/score_desk';
 import type { Notices } from '../store/notices';
@@ -62,4 +63,5 @@ export interface Context {
   layouts: Layouts;
   layoutExchange: LayoutExchange;
   themes: Themes;
+  colours: TrackColours;
 }

@@ -3,6 +3,9 @@ import { RestClient } from '../../src/connection/rest_client';
 import { Alignment, canBeDrawn } from '../../src/store/alignment';
 import { Cameras } from '../../src/store/pictures/cameras';
 import { Notices } from '../../src/store/notices';
+import { plotSpecs } from '../../src/store/plots/plot_specs';
+import { drawnTracks, scaleOf } from '../../src/store/tracks';
+import { curveStyle } from '../../src/views/colours';
 import { shownAlignment } from '../../src/store/state';
 import { playbackMessage } from '../support/samples';
 import { Viewing } from '../support/viewing';
@@ -55,6 +58,37 @@ describe('Alignment', () => {
     await chosen.choose('init_scale');
     expect(viewing.socket.last()).toMatchObject({ type: 'align', mode: 'init_scale' });
     expect(viewing.store.state.aligned).toBeNull();
+  });
+
+  it('draws estimates a second time, by the alignment they are compared with', async () => {
+    const { state } = viewing.store;
+    const values = () =>
+      plotSpecs(state, 'pose')[0]?.curves.map(({ name, curve }) => [name, curve()?.values[0]]);
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
+    const chosen = alignment();
+    await chosen.compare('sim3');
+    expect(asked).toEqual(['api/runs/r1/trajectories/feature?format=json&alignment=sim3']);
+    expect(viewing.socket.types(), 'the 3D view stays').not.toContain('align');
+    expect(values()?.slice(2)).toEqual([['feature by sim3', 7]]);
+    const dashes = plotSpecs(state, 'pose')[0]?.curves.map(
+      ({ hue }) => curveStyle(hue).dash.length,
+    );
+    expect(dashes).toEqual([0, 0, 2]);
+    viewing.session.showTrack('r1', 'feature', false);
+    expect(values()).toHaveLength(1);
+    viewing.session.showTrack('r1', 'feature', true);
+    await chosen.compare('init_scale');
+    expect(state.main?.compared?.estimates).toBe(state.main?.data.estimates);
+    await chosen.compare(null);
+    expect(drawnTracks(state).map(({ label }) => label)).toEqual(['truth', 'feature']);
+  });
+
+  it('knows the scale of each alignment', async () => {
+    const alignments = { init_scale: { scale: 2 }, sim3: { scale: 3, S_world_vo: {} } };
+    const scored = { estimators: { feature: { outcome: 'COMPLETED', alignments } } };
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics: scored });
+    await alignment().compare('sim3');
+    expect(drawnTracks(viewing.store.state).map(scaleOf)).toEqual([null, 2, 3]);
   });
 
   it('stays with what rows say where the score has no transform', async () => {

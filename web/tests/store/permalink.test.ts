@@ -1,50 +1,102 @@
 import { describe, expect, it } from 'vitest';
+import { layoutText } from '../../src/store/layouts/layout_text';
+import type { LayoutNode } from '../../src/store/layouts/layout_tree';
+import { usualChoices } from '../../src/store/link_choices';
+import type { LinkedRun, Permalink } from '../../src/store/permalink';
 import { formatPermalink, parsePermalink } from '../../src/store/permalink';
 
-const kUsual = { view: '', show: '', sideBySide: true, study: null };
-const alone = (id: string) => [{ id, offset_ns: 0 }];
+const kUsual: Permalink = {
+  runs: [],
+  main: null,
+  t_ns: null,
+  layout: null,
+  panels: null,
+  view: '',
+  show: '',
+  sideBySide: true,
+  choices: usualChoices(),
+  study: null,
+};
+const kPanels: LayoutNode = {
+  split: 'row',
+  parts: [
+    { size: 4000, node: { tabs: ['runs', 'log'], active: 'log' } },
+    { size: 6000, node: { tabs: ['scene'], active: 'scene' } },
+  ],
+};
+
+function alone(id: string, more: Partial<LinkedRun> = {}): LinkedRun[] {
+  const none = { hidden: new Set<string>(), camera: null, colours: new Map<string, string>() };
+  return [{ id, offset_ns: 0, ...none, ...more }];
+}
+
+function read(hash: string): Permalink {
+  const { problems, ...link } = parsePermalink(hash);
+  expect(problems).toEqual([]);
+  return link;
+}
 
 describe('permalink', () => {
   it('comes back as it was', () => {
-    const link = {
-      runs: alone('20260102-a b&c'),
+    const link: Permalink = {
+      runs: [
+        ...alone('20260102-a b&c', { hidden: new Set(['', 'dso, fast']), camera: 'left' }),
+        ...alone('r2', {
+          hidden: new Set(['a/b']),
+          offset_ns: 2e9,
+          colours: new Map([
+            ['', '3'],
+            ['a,b/c', 'ff8800'],
+          ]),
+        }),
+      ],
       main: null,
       t_ns: 12_345_000_000,
       layout: 'compare',
+      panels: kPanels,
       view: 'orbit,10.0,20.0,300,fixed',
       show: 'aircraft,image',
       sideBySide: false,
+      choices: {
+        alignment: 'sim3',
+        compared: 'se3',
+        plotGroup: 'errors',
+        window_s: [-1.5, 20.25],
+        clock: { range: { begin_ns: 1_500_000_000, end_ns: 9e9 }, speed: -0.5, loop: true },
+        debugOf: 'feature',
+        imageErrorOf: 'direct',
+        zooms: new Map([
+          ['camera', { scale: 4, x: 0.25, y: 0.75 }],
+          ['debug/a,b', { scale: 1.5, x: 0.5, y: 0.5 }],
+        ]),
+      },
       study: '20260102-120000-hunt-abc123',
     };
-    expect(parsePermalink(formatPermalink(link))).toEqual(link);
+    expect(read(formatPermalink(link))).toEqual(link);
   });
 
   it('has several runs with their offsets, and the main one', () => {
-    const link = {
-      runs: [...alone('r1'), { id: 'r2', offset_ns: -1_500_000_000 }],
-      main: 'r2',
-      t_ns: 0,
-      layout: null,
-      ...kUsual,
-    };
+    const runs = [...alone('r1'), ...alone('r2', { offset_ns: -1_500_000_000 })];
+    const link = { ...kUsual, runs, main: 'r2', t_ns: 0 };
     expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.500&main=r2&t=0.000');
-    expect(parsePermalink(formatPermalink(link))).toEqual(link);
+    expect(read(formatPermalink(link))).toEqual(link);
   });
 
-  it('leaves the time out while it follows live', () => {
-    expect(
-      formatPermalink({ runs: alone('r'), main: 'r', t_ns: null, layout: null, ...kUsual }),
-    ).toBe('#run=r');
-    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: null, ...kUsual })).toBe('');
-    expect(formatPermalink({ runs: [], main: null, t_ns: 3, layout: 'fly', ...kUsual })).toBe(
-      '#layout=fly',
-    );
+  it('leaves the time out while it follows live, and the choices where they are usual', () => {
+    const link = { ...kUsual, runs: alone('r'), main: 'r' };
+    expect(formatPermalink(link)).toBe('#run=r');
+    expect(formatPermalink({ ...kUsual, t_ns: 3 })).toBe('');
+    expect(formatPermalink({ ...kUsual, t_ns: 3, layout: 'fly' })).toBe('#layout=fly');
+  });
+
+  it('names runs by letters where they are hidden in part', () => {
+    const runs = [...alone('r1'), ...alone('r2', { hidden: new Set(['', 'feature']) })];
+    expect(formatPermalink({ ...kUsual, runs })).toBe('#run=r1&run=r2&hide=B&hide=B%2Ffeature');
   });
 
   it('has the study whose page is open, also without a run', () => {
-    const link = { runs: [], main: null, t_ns: null, layout: null, ...kUsual, study: '' };
-    expect(formatPermalink(link)).toBe('#study=');
-    expect(parsePermalink('#study=')).toEqual(link);
+    expect(formatPermalink({ ...kUsual, study: '' })).toBe('#study=');
+    expect(read('#study=')).toEqual({ ...kUsual, study: '' });
     expect(parsePermalink('#layout=fly&study=a').study).toBe('a');
   });
 
@@ -52,13 +104,67 @@ describe('permalink', () => {
     expect(parsePermalink('#run=r&run=r@3').runs).toEqual(alone('r'));
   });
 
-  it.each(['', '#', '#t=4x', '#run=', '#t=', '#main='])('reads nothing from %s', (hash) => {
-    expect(parsePermalink(hash)).toEqual({
-      runs: [],
-      main: null,
-      t_ns: null,
-      layout: null,
-      ...kUsual,
-    });
+  it.each(['', '#', '#run=', '#t=', '#main=', '#unknown=3'])('reads nothing from %s', (hash) => {
+    expect(read(hash)).toEqual(kUsual);
+  });
+
+  it.each([
+    ['t', '4x'],
+    ['align', 'Sim(3)'],
+    ['plots', '<script>'],
+    ['compare', 'a b'],
+    ['window', '3,1'],
+    ['window', '1'],
+    ['range', '1,Infinity'],
+    ['range', '1,2,3'],
+    ['speed', '1000'],
+    ['speed', 'NaN'],
+    ['loop', 'yes'],
+    ['debug', ''],
+    ['error', 'n'.repeat(201)],
+    ['zoom', '0.5,0.5,0.5,camera'],
+    ['zoom', '2,0.5,1.5,camera'],
+    ['zoom', '2,0.5,NaN,camera'],
+    ['zoom', '2,0.5,0.5'],
+    ['hide', 'B'],
+    ['hide', 'Z/feature'],
+    ['hide', 'a'],
+    ['camera', 'A'],
+    ['camera', '3,A/left'],
+    ['hide', '3,A'],
+    ['colour', 'A/feature'],
+    ['colour', '7,A/feature'],
+    ['colour', 'FF0000,A'],
+    ['colour', 'url(x),A'],
+    ['camera', `A/${'n'.repeat(201)}`],
+    ['panels', 'e30'],
+  ])('leaves out %s=%s, says so, and reads the rest', (name, value) => {
+    const fields = new URLSearchParams({ run: 'r', speed: '2', [name]: value, view: 'top' });
+    const { problems, runs, view } = parsePermalink(`#${fields.toString()}`);
+    expect(problems).toHaveLength(1);
+    expect(problems[0]).toContain(name);
+    expect(problems[0]?.length).toBeLessThan(120);
+    expect(runs).toEqual(alone('r'));
+    expect(view).toBe('top');
+  });
+
+  it('takes no more than a viewer can have', () => {
+    const many = (count: number, part: (i: number) => string) =>
+      Array.from({ length: count }, (_, i) => part(i)).join('&');
+    const runs = parsePermalink(`#${many(40, (i) => `run=r${i}`)}`);
+    expect(runs.runs).toHaveLength(16);
+    expect(runs.problems).toEqual(['more than 16 runs']);
+    const hidden = parsePermalink(`#run=r&${many(5000, (i) => `hide=A/n${i}`)}`);
+    expect(hidden.runs[0]?.hidden.size).toBe(300);
+    expect(hidden.problems).toEqual(['hide']);
+    const zooms = parsePermalink(`#${many(100, (i) => `zoom=2,0.5,0.5,g${i}`)}`);
+    expect(zooms.choices.zooms.size).toBe(40);
+    expect(zooms.problems).toEqual(['zoom']);
+  });
+
+  it('has an arrangement of panels beside the name of a layout', () => {
+    const hash = formatPermalink({ ...kUsual, layout: 'camera', panels: kPanels });
+    expect(hash).toBe(`#layout=camera&panels=${layoutText(kPanels)}`);
+    expect(read(hash).panels).toEqual(kPanels);
   });
 });

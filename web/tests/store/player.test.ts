@@ -36,6 +36,8 @@ describe('Player', () => {
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', frame: 31, run: 'r1' });
     viewing.player.seekTime(5e9);
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 5e9 });
+    expect(viewing.player.seekTarget_ns(11.01e9)).toBe(11e9);
+    expect(viewing.player.seekTarget_ns(5e9)).toBe(5e9);
   });
 
   it('keeps its direction when the speed changes', () => {

@@ -50,6 +50,39 @@ describe('Session', () => {
     expect(viewing.socket.sent.length).toBe(sent);
   });
 
+  it('plays as a permalink says, once all of its runs are there', () => {
+    const { session, socket, store } = viewing;
+    const settings = { range: { begin_ns: 1e9, end_ns: 2e9 }, speed: -2, loop: true };
+    const runs = ['r1', 'r2'].map((id) => ({ id, offset_ns: 0 }));
+    session.showRuns(runs, null, 1.5e9, settings);
+    const before = socket.sent.length;
+    socket.receive(playbackMessage());
+    expect(socket.sent.length, 'r2 is not there').toBe(before);
+    const both = playbackMessage({ playing: true });
+    socket.receive({ ...both, runs: { ...both.runs, ...playbackMessage({}, 'r2').runs } });
+    expect(socket.sent.slice(before)).toMatchObject([
+      { type: 'speed', value: -2 },
+      { type: 'loop', value: true },
+      { type: 'range', begin_ns: 1e9, end_ns: 2e9 },
+      { type: 'seek', t_ns: 1.5e9 },
+      { type: 'pause' },
+    ]);
+    store.state.clock = { ...samplePlayback(), ...settings };
+    session.showRuns(runs, null, null, { range: null, speed: -2, loop: true });
+    expect(socket.last()).toMatchObject({ type: 'range' });
+    expect(socket.last()).not.toHaveProperty('begin_ns');
+  });
+
+  it('goes to the instant of a permalink without the run that cannot be shown', () => {
+    const { session, socket } = viewing;
+    const runs = ['r1', 'r2'].map((id) => ({ id, offset_ns: 0 }));
+    session.showRuns(runs, null, 1.5e9);
+    socket.receive(playbackMessage());
+    expect(socket.types()).not.toContain('seek');
+    session.onWatchFailed('r2', 'there is none');
+    expect(socket.sent.at(-1)).toMatchObject({ type: 'seek', t_ns: 1.5e9 });
+  });
+
   it('comes back after a lost connection: rows resumed, cursor where it was', () => {
     viewing.watch();
     viewing.socket.receive(playbackMessage({ t_ns: 1e9, speed: 2 }));

@@ -1,6 +1,6 @@
 // Runs a calibration on the server and follows it. The page computes nothing of the camera itself.
 import type { CalibrationClient, SessionControl } from '../../connection/calibration_client';
-import { RestError } from '../../connection/rest_client';
+import { RestError } from '../../connection/rest_error';
 import type { CalibrationSession } from '../../protocol/calibration_types';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Notices } from '../notices';

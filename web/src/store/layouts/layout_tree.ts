@@ -51,6 +51,11 @@ export function sameArrangement(a: LayoutNode, b: LayoutNode, tolerance = 0.01):
   });
 }
 
+/** Whether both have the same panels in front. */
+export function sameFront(a: LayoutNode, b: LayoutNode): boolean {
+  return frontPanels(a).join() === frontPanels(b).join();
+}
+
 /** Names the field that is wrong, and what it must be. */
 export class LayoutError extends Error {
   constructor(field: string, problem: string) {

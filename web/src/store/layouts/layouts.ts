@@ -2,7 +2,7 @@
 import type { Notices } from '../notices';
 import type { Store } from '../state';
 import type { LayoutNode } from './layout_tree';
-import { readLayout } from './layout_tree';
+import { readLayout, sameArrangement, sameFront } from './layout_tree';
 import type { PanelName } from './panel_names';
 import type { Area } from './ready_layouts';
 import { kDefaultLayout, readyLayout } from './ready_layouts';
@@ -28,6 +28,14 @@ export interface OwnLayout {
   tree: LayoutNode;
   /** null = the 3D view and the pictures stay as they are. */
   look: LayoutLook | null;
+}
+
+/** A layout that any browser can show. */
+export interface SharedLayout {
+  /** Of a ready-made layout; null for an own one. */
+  name: string | null;
+  /** null = as the ready-made layout is. */
+  tree: LayoutNode | null;
 }
 
 /** Where the look comes from, and where it goes. */
@@ -58,6 +66,7 @@ export class Layouts {
   /** Of own layouts. */
   private looks = new Map<string, LayoutLook>();
   private arranger: Arranger | null = null;
+  private kept: () => void = () => undefined;
 
   constructor(
     private readonly store: Store,
@@ -70,6 +79,11 @@ export class Layouts {
 
   use(arranger: Arranger): void {
     this.arranger = arranger;
+  }
+
+  /** Calls back whenever something was kept, for an address that must not be older. */
+  onKept(listener: () => void): void {
+    this.kept = listener;
   }
 
   get current(): string {
@@ -88,9 +102,31 @@ export class Layouts {
     return [...this.own.keys()].sort((a, b) => a.localeCompare(b));
   }
 
-  /** For an address: null for what another browser does not have. */
-  get shared(): string | null {
-    return this.isChanged || this.own.has(this.name) ? null : this.name;
+  /** For an address. */
+  get shared(): SharedLayout {
+    return {
+      name: this.own.has(this.name) ? null : this.name,
+      tree: this.changed ?? this.own.get(this.name) ?? null,
+    };
+  }
+
+  /** Shows the layout of an address, which may be an own one of this browser. */
+  open({ name, tree }: SharedLayout): void {
+    const { shared } = this;
+    if (tree === null) {
+      if (name !== null && (name !== shared.name || shared.tree !== null)) this.choose(name);
+      return;
+    }
+    if (shared.tree !== null && sameLayout(shared.tree, tree)) return;
+    const own = [...this.own].find(([, kept]) => sameLayout(kept, tree));
+    if (own !== undefined) {
+      this.choose(own[0]);
+      return;
+    }
+    this.name = name !== null && readyLayout(name) !== undefined ? name : kDefaultLayout;
+    this.changed = tree;
+    this.keep();
+    this.arranger?.arrange();
   }
 
   arrangement(area: Area): LayoutNode {
@@ -223,6 +259,7 @@ export class Layouts {
       // Without storage, or with a full one, the layout lasts until the page is closed.
     }
     this.store.change('layout');
+    this.kept();
   }
 
   private read(): void {
@@ -263,6 +300,10 @@ export class Layouts {
     if (this.changed === null) lost.push(this.title);
     return lost;
   }
+}
+
+function sameLayout(a: LayoutNode, b: LayoutNode): boolean {
+  return sameArrangement(a, b) && sameFront(a, b);
 }
 
 /** Why an own layout cannot have this name, or null. */

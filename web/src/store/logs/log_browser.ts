@@ -1,6 +1,6 @@
 // The page of flight logs: listed, uploaded, looked at, flown.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_error';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
 import type { LogEntry, LogInfo, LogList, LogSeries, WorldExtent } from '../../protocol/log_types';

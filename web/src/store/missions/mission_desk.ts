@@ -1,7 +1,7 @@
 // Draws missions: opens worlds, edits with undo, asks the server what they will be like, saves and
 // flies them. The page computes nothing of a flight itself.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_error';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Storage } from '../layouts/layouts';
 import type { Session } from '../session';

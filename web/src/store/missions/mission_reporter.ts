@@ -1,6 +1,6 @@
 // Asks the server what a mission will be like, when its edits pause.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf, RestError } from '../../connection/rest_client';
+import { fieldErrorsOf, RestError } from '../../connection/rest_error';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Store } from '../state';
 import type { MissionPage } from './mission_page';

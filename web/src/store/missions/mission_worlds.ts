@@ -1,6 +1,6 @@
 // The worlds over which missions are drawn: listed, opened, made.
 import type { RestClient } from '../../connection/rest_client';
-import { RestError } from '../../connection/rest_client';
+import { RestError } from '../../connection/rest_error';
 import type { Store } from '../state';
 import { isInside } from './mission_document';
 import type { Home } from './mission_item';

@@ -22,6 +22,11 @@ export interface Zoom {
 export const kWholePicture: Zoom = { scale: 1, x: 0.5, y: 0.5 };
 const kLargestScale = 64;
 
+/** Whether numbers from outside make a zoom. */
+export function isZoom({ scale, x, y }: Zoom): boolean {
+  return scale >= 1 && scale <= kLargestScale && x >= 0 && x <= 1 && y >= 0 && y <= 1;
+}
+
 /** Where the whole picture lies on an area, in its units; parts may be outside. */
 export function placed(area: Size, picture: Size, zoom: Zoom): Rect {
   const fit = Math.min(area.width / picture.width, area.height / picture.height) * zoom.scale;

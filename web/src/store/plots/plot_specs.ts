@@ -6,8 +6,9 @@ import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { State } from '../state';
 import type { Table } from '../table';
+import type { TrackColour } from '../track_colours';
 import type { Track } from '../tracks';
-import { tracksOf } from '../tracks';
+import { drawnTracks, shownTracks, tableOf } from '../tracks';
 import type { WatchedRun } from '../watched_run';
 import type { Curve } from './curve';
 import { kSensorFigures, longestPause_s } from './sensor_figures';
@@ -16,8 +17,8 @@ export type PlotGroup = 'pose' | 'errors' | 'image' | 'estimates' | 'sensors' | 
 
 /** Truth is red, an estimate has its own colour, other curves are neutral or of an axis. */
 export type CurveHue =
-  | { kind: 'truth'; order: number }
-  | { kind: 'estimate'; colour: number }
+  | { kind: 'truth'; order: number; chosen?: TrackColour }
+  | { kind: 'estimate'; colour: number; chosen?: TrackColour; second?: true }
   | { kind: 'run'; order: number }
   | { kind: 'axis'; axis: number };
 
@@ -101,7 +102,7 @@ export function groupOf({ stream, column }: SeriesInfo): PlotGroup | null {
 }
 
 function poseSpecs(state: State): PlotSpec[] {
-  const tracks = tracksOf(state).filter(({ shown }) => shown);
+  const tracks = drawnTracks(state);
   return kAxes.map((axis) => {
     const angle = axis.endsWith('_deg');
     return {
@@ -115,7 +116,7 @@ function poseSpecs(state: State): PlotSpec[] {
         short: track.letter,
         hue: hueOf(track),
         curve: () => curveOf(tableOf(track), track.run, axis, 1, angle),
-        atClock: () => poseAtClock(track)?.[axis],
+        ...(track.by === undefined ? { atClock: () => poseAtClock(track)?.[axis] } : {}),
       })),
     };
   });
@@ -128,8 +129,7 @@ function poseAtClock({ run, name }: Track) {
 /** One plot for each column of the group of which values have arrived. */
 function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
   const specs = new Map<string, PlotSpec>();
-  for (const track of tracksOf(state)) {
-    if (!track.shown) continue;
+  for (const track of group === 'errors' ? drawnTracks(state) : shownTracks(state)) {
     for (const series of track.run.series) {
       if (groupOf(series) !== group || trackOf(series) !== track.name) continue;
       const table = seriesTable(track, series);
@@ -162,12 +162,10 @@ function seriesTable(track: Track, { stream }: SeriesInfo): Table | undefined {
   return stream === 'vehicle' ? track.run.data.vehicleTable : tableOf(track);
 }
 
-function tableOf({ run, name }: Track): Table | undefined {
-  return name === '' ? run.data.truth : run.shownEstimate(name)?.table;
-}
-
-function hueOf({ name, order, colour }: Track): CurveHue {
-  return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
+export function hueOf({ name, order, colour, chosen, by }: Track): CurveHue {
+  const second = by === undefined ? {} : { second: true as const };
+  const own = { ...(chosen === null ? {} : { chosen }), ...second };
+  return name === '' ? { kind: 'truth', order, ...own } : { kind: 'estimate', colour, ...own };
 }
 
 /** Frames that were dropped do not break a curve; lost ones have no value and do. */

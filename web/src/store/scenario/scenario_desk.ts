@@ -1,7 +1,7 @@
 // Changes the launcher's scenario: by its fields or as JSON, checked here and by the server when
 // the changes pause; saves it as a scenario of its own.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf, RestError } from '../../connection/rest_client';
+import { fieldErrorsOf, RestError } from '../../connection/rest_error';
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
 import type { FieldSpec } from '../launch_form';

@@ -1,6 +1,6 @@
 // A study that the viewer prepares: of a run, or of a scenario with the launcher's changes.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_error';
 import type { StudyClient } from '../../connection/study_client';
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject, Run } from '../../protocol/rest_types';

@@ -1,5 +1,5 @@
 // A sweep that the viewer prepares: its document, checked while typing, and what it costs.
-import { fieldErrorsOf, RestError } from '../../connection/rest_client';
+import { fieldErrorsOf, RestError } from '../../connection/rest_error';
 import type { SweepClient } from '../../connection/sweep_client';
 import type { FieldError } from '../../protocol/field_errors';
 import { readFieldErrors } from '../../protocol/field_errors';

@@ -1,6 +1,6 @@
 // Connects to an autopilot by address and flies what it reports over the world of any scenario.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_client';
+import { fieldErrorsOf } from '../../connection/rest_error';
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
 import { valueAt } from '../launch_form';

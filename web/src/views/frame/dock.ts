@@ -1,7 +1,7 @@
 // The panels on a screen that is wide enough: side by side, resized and moved by the viewer.
 import { createDockview } from 'dockview-core';
 import type { DockviewApi, IGroupHeaderProps } from 'dockview-core';
-import { frontPanels, sameArrangement } from '../../store/layouts/layout_tree';
+import { sameArrangement, sameFront } from '../../store/layouts/layout_tree';
 import type { LayoutNode } from '../../store/layouts/layout_tree';
 import { isPanelName, kPanels } from '../../store/layouts/panel_names';
 import type { PanelName } from '../../store/layouts/panel_names';
@@ -133,10 +133,6 @@ export class Dock {
 interface PanelVisibility {
   isVisible: boolean;
   onDidVisibilityChange: (listener: (event: { isVisible: boolean }) => void) => unknown;
-}
-
-function sameFront(a: LayoutNode, b: LayoutNode): boolean {
-  return frontPanels(a).join() === frontPanels(b).join();
 }
 
 /** The title of a panel with a button that hides it. */

@@ -9,13 +9,12 @@ import { PicturePanel, waitingText } from './picture_panel';
 
 export class DebugPanel extends PicturePanel {
   private readonly chooser = h('select', { id: 'debug-of', 'aria-label': 'Estimator' });
-  private selected: string | null = null;
 
   constructor(context: Context) {
     super(context, 'debug', 'Estimator');
     this.panel.tools.prepend(this.chooser);
     this.chooser.addEventListener('change', () => {
-      this.selected = this.chooser.value;
+      context.store.state.debugOf = this.chooser.value;
       context.store.change('pictures');
     });
   }
@@ -57,9 +56,8 @@ export class DebugPanel extends PicturePanel {
 
   private estimatorOf({ run }: WatchedRun): string | null {
     const names = run?.estimators ?? [];
-    return this.selected !== null && names.includes(this.selected)
-      ? this.selected
-      : (names[0] ?? null);
+    const { debugOf } = this.context.store.state;
+    return debugOf !== null && names.includes(debugOf) ? debugOf : (names[0] ?? null);
   }
 
   private updateChooser(): void {

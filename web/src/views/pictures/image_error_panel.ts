@@ -18,14 +18,13 @@ export class ImageErrorPanel extends PicturePanel {
     id: 'image-error-of',
     'aria-label': 'What is compared',
   });
-  /** The estimator whose view is compared; '' = the camera's image itself. */
-  private selected = kEffects;
 
   constructor(context: Context) {
     super(context, 'image-error', 'Image error');
     this.panel.tools.prepend(this.chooser);
     this.chooser.addEventListener('change', () => {
-      this.selected = this.chooser.value;
+      const { value } = this.chooser;
+      context.store.state.imageErrorOf = value === kEffects ? null : value;
       context.store.change('pictures');
     });
   }
@@ -37,16 +36,23 @@ export class ImageErrorPanel extends PicturePanel {
   }
 
   protected override streamOf(watched: WatchedRun): CellStream | null {
-    return this.selected === kEffects ? effects(watched) : poseError(watched, this.selected);
+    const { selected } = this;
+    return selected === kEffects ? effects(watched) : poseError(watched, selected);
   }
 
   protected override emptyText(state: State): string {
     return waitingText(state.main);
   }
 
+  /** The estimator whose view is compared, of the main run; else the camera's image itself. */
+  private get selected(): string {
+    const { imageErrorOf, run } = this.context.store.state;
+    const known = imageErrorOf !== null && run?.estimators.includes(imageErrorOf) === true;
+    return known ? imageErrorOf : kEffects;
+  }
+
   private updateChooser(): void {
     const names = this.context.store.state.run?.estimators ?? [];
-    if (!names.includes(this.selected)) this.selected = kEffects;
     rebuild(this.chooser, JSON.stringify(names), () => [
       h('option', { value: kEffects }, 'Sensor and faults'),
       ...names.map((name) => h('option', { value: name }, `Pose of ${name}`)),

@@ -5,7 +5,7 @@ import { toScreen } from '../../store/plot3d/orbit_view';
 import type { Size } from '../../store/plots/path_frame';
 import { distinguishingNames } from '../../store/run_names';
 import type { State } from '../../store/state';
-import { curveStyle, trackHue } from '../colours';
+import { trackColour } from '../colours';
 import { h, setText } from '../dom';
 import type { TrackPlace } from './shown_tracks';
 
@@ -34,7 +34,7 @@ export class HoverNote {
     const [x, y, z] = place.map((part) => formatNumber(part, 1));
     setText(this.place, `x ${x}  y ${y}  z ${z} m`);
     const [left, top] = toScreen(map, place);
-    this.dot.style.cssText = `left:${left}px;top:${top}px;color:${curveStyle(trackHue(track)).colour}`;
+    this.dot.style.cssText = `left:${left}px;top:${top}px;color:${trackColour(track)}`;
     for (const part of this.parts) part.hidden = false;
     const { offsetWidth, offsetHeight } = this.box;
     const right = left + kOff_px + offsetWidth > size.width_px ? -kOff_px - offsetWidth : kOff_px;

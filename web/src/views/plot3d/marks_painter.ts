@@ -7,6 +7,8 @@ import { paint } from '../paint';
 
 /** An aircraft at the clock's time. */
 export interface Mark {
+  /** Of its track. */
+  label: string;
   place: Point3;
   axes: BodyAxes;
   /** As in a style sheet. */

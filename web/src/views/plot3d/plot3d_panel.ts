@@ -4,10 +4,12 @@ import { kPanels } from '../../store/layouts/panel_names';
 import { bodyAxes } from '../../store/plot3d/attitude';
 import { boxOfAll } from '../../store/plot3d/axis_box';
 import type { Size } from '../../store/plots/path_frame';
+import { hueOf } from '../../store/plots/plot_specs';
 import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
-import { curveStyle, trackHue } from '../colours';
+import { scaleText } from '../alignment_legend';
+import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
 import type { Panel } from '../panel';
@@ -116,11 +118,14 @@ export class Plot3dPanel implements View {
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
     const estimates = shown.some(({ name }) => name !== '');
     const labels = shown.map(({ label }) => label);
-    rebuild(this.legend, JSON.stringify([alignment, labels]), () => [
-      ...shown.map((track) => {
-        const { colour, dash } = curveStyle(trackHue(track));
+    const named = shown.map((track) => ({
+      name: `${track.label}${scaleText(track, state.compared)}`,
+      ...curveStyle(hueOf(track)),
+    }));
+    rebuild(this.legend, JSON.stringify([alignment, named]), () => [
+      ...named.map(({ name, colour, dash }) => {
         const dashed = dash.length > 0 ? 'dashed' : '';
-        return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), track.label);
+        return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), name);
       }),
       ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
     ]);
@@ -155,7 +160,9 @@ export class Plot3dPanel implements View {
     stage.draw(current, size, view.drawnBox, heightScale);
     const marksPen = penOf(this.marks, size);
     const options = { floor_m: scales[2].low, errorLines: this.errorLines };
-    if (marksPen !== null) paintMarks(marksPen, marksOf(state), current, map, options);
+    const marks = marksOf(state);
+    if (marksPen !== null) paintMarks(marksPen, marks, current, map, options);
+    setAttribute(this.root, 'data-marks', marksText(marks));
     this.draws += 1;
     setAttribute(this.root, 'data-draws', String(this.draws));
     setAttribute(this.root, 'data-points', String(tracks.pointCount));
@@ -205,19 +212,27 @@ export class Plot3dPanel implements View {
 /** Every shown track that has a pose at the clock's time. */
 function marksOf(state: State): Mark[] {
   return tracksOf(state).flatMap((track) => {
-    const { run, name, letter, shown } = track;
+    const { run, name, letter, label, shown } = track;
     const truth = run.instant?.truth ?? null;
     const pose = name === '' ? truth : run.instant?.estimates[name]?.pose;
     if (!shown || pose === undefined || pose === null) return [];
     return {
+      label,
       place: [pose.x_m, pose.y_m, pose.z_m],
       axes: bodyAxes(pose),
-      colour: curveStyle(trackHue(track)).colour,
+      colour: trackColour(track),
       truth: name === '',
       letter: name === '' ? letter : '',
       truthPlace: name === '' || truth === null ? null : [truth.x_m, truth.y_m, truth.z_m],
     };
   });
+}
+
+/** Which aircraft are drawn and where [m]. */
+export function marksText(marks: readonly { label: string; place: readonly number[] }[]): string {
+  return marks
+    .map(({ label, place }) => [label, ...place.map((part) => part.toFixed(3))].join(' '))
+    .join('; ');
 }
 
 /** Of a canvas that was cleared, in CSS pixels. */

@@ -5,9 +5,10 @@ import type { ScreenMap } from '../../store/plot3d/orbit_view';
 import { nearestOnTrack } from '../../store/plot3d/track_pick';
 import type { State } from '../../store/state';
 import { nearestIndex } from '../../store/table';
+import { hueOf } from '../../store/plots/plot_specs';
 import type { Track } from '../../store/tracks';
-import { tracksOf } from '../../store/tracks';
-import { curveStyle, trackHue } from '../colours';
+import { drawnTracks, tableOf } from '../../store/tracks';
+import { curveStyle } from '../colours';
 import { paint } from '../paint';
 import type { LineStage } from './line_stage';
 import { rgbOf } from './rgb';
@@ -43,18 +44,18 @@ export class ShownTracks {
 
   /** Takes the tracks as they are now. */
   take(state: State): void {
-    const wanted = tracksOf(state).filter(({ shown }) => shown);
+    const wanted = drawnTracks(state);
     const most = Math.floor(this.stage.mostPoints / Math.max(1, wanted.length));
     const before = this.shown;
     this.shown = new Map();
     wanted.forEach((track, order) => {
-      const key = JSON.stringify([track.run.id, track.name]);
+      const key = JSON.stringify([track.run.id, track.name, track.by]);
       const one = this.current(track, before.get(key));
       if (one === null) return;
       if (one === before.get(key)) before.delete(key);
       one.track = track;
       one.line.setPoints(one.points, one.points.extend(most));
-      const style = curveStyle(trackHue(track));
+      const style = curveStyle(hueOf(track));
       one.line.setStyle(style, rgbOf(paint(style.colour)), order);
       this.shown.set(key, one);
     });
@@ -83,9 +84,8 @@ export class ShownTracks {
 
   /** What is shown already if it is still of these rows, else a new one; null without rows. */
   private current(track: Track, known: ShownTrack | undefined): ShownTrack | null {
-    const { run, name } = track;
-    const table = name === '' ? run.data.truth : run.shownEstimate(name)?.table;
-    const { generation } = run.data;
+    const table = tableOf(track);
+    const { generation } = track.run.data;
     if (table === undefined) return null;
     if (known?.points.table === table && known.generation === generation) return known;
     const line = new TrackLine(this.stage.uniforms);

@@ -12,8 +12,9 @@ import {
   zoomedAt,
 } from '../../store/plots/path_frame';
 import type { State } from '../../store/state';
-import { tracksOf } from '../../store/tracks';
-import { curveStyle, trackHue } from '../colours';
+import { hueOf } from '../../store/plots/plot_specs';
+import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
+import { curveStyle } from '../colours';
 import { h, perFrame, setText } from '../dom';
 import { paint } from '../paint';
 
@@ -74,13 +75,13 @@ export class PathPlot {
 
   /** Takes the tracks as they are now. */
   draw(state: State): void {
-    const paths = tracksOf(state).flatMap((track): Path[] => {
-      const { run, name, shown } = track;
-      const table = name === '' ? run.data.truth : run.shownEstimate(name)?.table;
-      if (!shown || table === undefined) return [];
+    const paths = drawnTracks(state).flatMap((track): Path[] => {
+      const { run } = track;
+      const table = tableOf(track);
+      if (table === undefined) return [];
       const { across, up } = this.axes;
       const [x, y, t] = [table.column(across), table.column(up), table.column('t_ns')];
-      return [{ hue: trackHue(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
+      return [{ hue: hueOf(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
     });
     this.show(paths, this.marksOf(state));
   }
@@ -101,7 +102,7 @@ export class PathPlot {
       const { run, name, shown } = track;
       const pose = name === '' ? run.instant?.truth : run.instant?.estimates[name]?.pose;
       if (!shown || pose === undefined || pose === null) return [];
-      return { x: pose[across], y: pose[up], hue: trackHue(track) };
+      return { x: pose[across], y: pose[up], hue: hueOf(track) };
     });
   }
 

@@ -5,10 +5,11 @@ import { formatTime } from '../../store/format';
 import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
-import { following, zoomed } from '../../store/time_window';
+import { windowAt, zoomed } from '../../store/time_window';
 import { clockSpan_ns, shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
+import { AlignmentLegend } from '../alignment_legend';
 import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
@@ -42,6 +43,9 @@ type Group = (typeof kGroups)[number]['name'];
 /** Groups that are panels of their own as well. */
 type PanelGroup = 'errors' | 'image';
 
+/** Groups that depend on the alignment of the estimates. */
+const kByAlignment: readonly Group[] = ['pose', 'path', 'errors'];
+
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
 
@@ -64,19 +68,18 @@ export class PlotsPanel implements View {
     'data-role': 'alignment',
     title: 'Alignment of the estimates to the truth (selected above the errors)',
   });
+  private readonly scales = new AlignmentLegend();
   private readonly hoverTime = h('span', { class: 'hover-time' });
-  private group: Group = 'pose';
   private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
   private readonly paths: readonly PathPlot[];
   private key = '';
-  private runs = '';
   private drawn_ms = -Infinity;
   private timer = 0;
   /** Time under the mouse. */
   private hovered_s: number | null = null;
-  /** The part zoomed to; null = the whole flight. */
-  private window_s: Span | null = null;
+  /** Time of the clock when it was drawn last. */
+  private shown_s: number | null = null;
 
   /** @param only  shows only this group, as a panel of its own */
   constructor(
@@ -92,10 +95,9 @@ export class PlotsPanel implements View {
       () => this.shownPlots(),
       (text) => context.notices.error(text),
     );
-    if (only !== null) this.group = only;
-    else this.panel.tools.append(this.tabs);
+    if (only === null) this.panel.tools.append(this.tabs);
     this.panel.tools.append(this.files, this.alignment, this.hoverTime);
-    this.panel.body.append(this.grid, this.statuses.root);
+    this.panel.body.append(this.scales.root, this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
     new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
@@ -103,6 +105,7 @@ export class PlotsPanel implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     if (changed.has('run') || changed.has('rows') || changed.has('sensors')) this.drawSoon();
+    if (changed.has('plots') || changed.has('metrics')) this.drawSoon();
     if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
@@ -114,6 +117,16 @@ export class PlotsPanel implements View {
 
   onHidden(): void {
     if (this.only === null) this.context.sensors.hide();
+  }
+
+  private get group(): Group {
+    const { plotGroup } = this.context.store.state;
+    return this.only ?? kGroups.find(({ name }) => name === plotGroup)?.name ?? kGroups[0].name;
+  }
+
+  /** The part zoomed to; null = the whole flight. */
+  private get window_s(): Span | null {
+    return this.context.store.state.plotWindow?.span_s ?? null;
   }
 
   private drawSoon(): void {
@@ -135,6 +148,7 @@ export class PlotsPanel implements View {
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
+    this.scales.draw(state, kByAlignment.includes(this.group));
     const span_s = this.window_s ?? this.whole();
     for (const plot of this.plots) plot.draw(span_s);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
@@ -160,19 +174,23 @@ export class PlotsPanel implements View {
   }
 
   private zoom(centre_s: number, factor: number): void {
+    const { store } = this.context;
     const whole = this.whole();
-    this.window_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
-    this.drawSoon();
+    const span_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
+    const chosen_ns = store.state.clock?.t_ns ?? null;
+    store.state.plotWindow = span_s === null ? null : { span_s, chosen_ns, reached: true };
+    store.change('plots');
   }
 
   /** Keeps the cursor inside the window. */
   private followCursor(): void {
-    const { clock } = this.context.store.state;
-    if (this.window_s === null || clock === null) return;
-    const moved = following(this.window_s, this.whole(), clock.t_ns / 1e9);
-    if (moved === this.window_s) return;
-    this.window_s = moved;
-    this.drawSoon();
+    const { store } = this.context;
+    const { clock, plotWindow } = store.state;
+    if (plotWindow === null || clock === null) return;
+    const now = windowAt(plotWindow, this.whole(), clock);
+    if (now === plotWindow) return;
+    store.state.plotWindow = now;
+    store.change('plots');
   }
 
   /** Unchanged as long as the plots need not be rebuilt. */
@@ -213,9 +231,6 @@ export class PlotsPanel implements View {
 
   private build(): void {
     const { state } = this.context.store;
-    const runs = state.watched.map(({ id }) => id).join(' ');
-    if (runs !== this.runs) this.window_s = null;
-    this.runs = runs;
     this.key = this.wantedKey();
     for (const plot of this.plots) plot.destroy();
     // The mouse does not leave a plot that is removed.
@@ -250,8 +265,7 @@ export class PlotsPanel implements View {
     const aligned = this.context.store.state.watched.filter(
       ({ run }) => (run?.estimators.length ?? 0) > 0,
     );
-    const byAlignment: readonly Group[] = ['pose', 'path', 'errors'];
-    if (!byAlignment.includes(this.group) || aligned.length === 0) return '';
+    if (!kByAlignment.includes(this.group) || aligned.length === 0) return '';
     return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
 
@@ -275,8 +289,8 @@ export class PlotsPanel implements View {
             'aria-pressed': name === this.group ? 'true' : 'false',
             'data-attention': attention && name === 'estimators',
             onclick: () => {
-              this.group = name;
-              this.draw();
+              this.context.store.state.plotGroup = name;
+              this.context.store.change('plots');
             },
           },
           label,
@@ -287,12 +301,16 @@ export class PlotsPanel implements View {
 
   private moveCursor(): void {
     const { playback } = this.context.store.state;
-    for (const plot of this.plots) plot.moveCursor(this.cursor_s());
+    const cursor_s = this.cursor_s();
+    // A mouse that rests while the clock is moved does not keep values of another instant.
+    if (playback?.playing === false && cursor_s !== this.shown_s) this.hover(null);
+    this.shown_s = cursor_s;
+    for (const plot of this.plots) plot.moveCursor(cursor_s);
     if (this.group === 'path') {
       for (const path of this.paths) path.moveMarks(this.context.store.state);
     }
     this.panel.showFrame(frameOf(playback));
-    if (this.hovered_s === null) this.showCursorValues();
+    this.showValues();
   }
 
   private cursor_s(): number | null {
@@ -313,10 +331,22 @@ export class PlotsPanel implements View {
 
   /** Shows values under the mouse in place of those at the cursor. */
   private hover(t_s: number | null): void {
-    this.hovered_s = t_s;
-    setText(this.hoverTime, t_s === null ? '' : formatTime(t_s * 1e9));
-    if (t_s === null) this.showCursorValues();
-    else for (const plot of this.plots) plot.showHover(t_s);
+    this.hovered_s = t_s === null ? null : this.readAt_s(t_s);
+    setText(this.hoverTime, this.hovered_s === null ? '' : formatTime(this.hovered_s * 1e9));
+    this.showValues();
+  }
+
+  /** Of frames the one to which a click seeks: the values do not change by it. */
+  private readAt_s(t_s: number): number {
+    const ownTimes: readonly Group[] = ['sensors', 'vehicle'];
+    if (ownTimes.includes(this.group)) return t_s;
+    return this.context.player.seekTarget_ns(t_s * 1e9) / 1e9;
+  }
+
+  private showValues(): void {
+    const { hovered_s } = this;
+    if (hovered_s === null || hovered_s === this.cursor_s()) this.showCursorValues();
+    else for (const plot of this.plots) plot.showHover(hovered_s);
   }
 }
 

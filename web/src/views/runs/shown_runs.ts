@@ -1,36 +1,43 @@
-// The runs that are shown together: their tracks, their offsets on the clock, which one is the main.
+// The runs that are shown: their tracks and, of several, their offsets and which one is the main.
 import { formatNumber } from '../../store/format';
 import { distinguishingNames } from '../../store/run_names';
 import type { State } from '../../store/state';
 import type { Track } from '../../store/tracks';
 import { runLetter, tracksOf } from '../../store/tracks';
 import type { WatchedRun } from '../../store/watched_run';
-import { curveStyle, trackHue } from '../colours';
+import { trackColour } from '../colours';
 import { h, rebuild } from '../dom';
 import { icon } from '../icons';
 import type { Context } from '../view';
+import { ColourSheet } from './colour_sheet';
 
-/** Empty while one run is shown, whose entry in the list is enough. */
+/** Of a run that is shown alone only its tracks: the rest is in the list. */
 export class ShownRuns {
-  readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown together' });
+  readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown, and their tracks' });
 
   /** An offset is being typed: new entries would throw it away. */
   private typing = false;
   /** Inputs of the offsets, by run. */
   private readonly offsets = new Map<string, HTMLInputElement>();
 
-  constructor(private readonly context: Context) {}
+  private readonly sheet: ColourSheet;
+
+  constructor(private readonly context: Context) {
+    this.sheet = new ColourSheet(context);
+    document.body.append(this.sheet.root);
+  }
 
   draw(state: State): void {
     if (this.typing) return;
     const { watched, runId } = state;
     const tracks = tracksOf(state);
-    const drawn = tracks.map(({ label, shown }) => [label, shown]);
+    const drawn = tracks.map(({ label, shown, chosen }) => [label, shown, chosen]);
     const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
     const runs = watched.map(({ id }) => [id, names.get(id)]);
+    const alone = watched.length < 2;
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
-      watched.length < 2
-        ? []
+      alone
+        ? [h('li', { class: 'shown-run' }, this.tracksOf(tracks))]
         : watched.map((one) =>
             this.entry(
               one,
@@ -45,7 +52,8 @@ export class ShownRuns {
       const text = offsetText(offset_ns);
       if (offset !== undefined && offset.value !== text) offset.value = text;
     }
-    this.root.hidden = watched.length < 2;
+    this.root.hidden = watched.length === 0;
+    this.root.classList.toggle('alone', alone);
   }
 
   private entry(watched: WatchedRun, name: string, letter: string, tracks: Track[]): HTMLElement {
@@ -93,25 +101,44 @@ export class ShownRuns {
         },
         icon('close'),
       ),
-      h('div', { class: 'shown-tracks' }, ...tracks.map((track) => this.trackButton(track))),
+      this.tracksOf(tracks),
     );
   }
 
-  private trackButton(track: Track): HTMLElement {
-    const { run, name, label, shown } = track;
-    const { colour } = curveStyle(trackHue(track));
-    const text = name === '' ? 'truth' : name;
+  private tracksOf(tracks: readonly Track[]): HTMLElement {
     return h(
+      'div',
+      { class: 'shown-tracks', role: 'group', 'aria-label': 'Tracks' },
+      ...tracks.map((track) => this.trackChip(track)),
+    );
+  }
+
+  private trackChip(track: Track): HTMLElement {
+    const { run, name, label, shown } = track;
+    const text = name === '' ? 'truth' : name;
+    const colour = h(
+      'button',
+      {
+        class: 'track-colour',
+        title: `Choose the colour of ${label}`,
+        'aria-label': `Choose the colour of ${label}`,
+        'aria-haspopup': 'true',
+        onclick: () => this.sheet.open(track, colour),
+      },
+      h('i', { style: `background:${trackColour(track)}` }),
+    );
+    const toggle = h(
       'button',
       {
         class: 'track-button',
         'aria-pressed': shown ? 'true' : 'false',
-        title: `${shown ? 'Hide' : 'Show'} ${label} in the plots`,
+        'aria-label': `Show ${label}`,
+        title: `${shown ? 'Hide' : 'Show'} ${label} in the plots and the 3D plot`,
         onclick: () => this.context.session.showTrack(run.id, name, !shown),
       },
-      h('i', { style: `background:${colour}` }),
       text,
     );
+    return h('span', { class: 'track-chip' }, colour, toggle);
   }
 }
 

@@ -17,12 +17,12 @@ export interface LabelText {
 /** Error below this is not worth a number. */
 const kLeastError_m = 0.05;
 
-/** The text of a label, with the colour of its track; null for a run that is not watched now. */
+/** The text of a label, with the colour of its track; null if that is not shown or not watched now. */
 export function labelText(state: State, label: SceneLabel): LabelText | null {
   const track = tracksOf(state).find(
     ({ run, name }) => run.id === label.run && name === (label.estimator ?? ''),
   );
-  if (track === undefined) return null;
+  if (track === undefined || !track.shown) return null;
   const error_m = label.error_m ?? 0;
   const error = error_m < kLeastError_m ? '' : ` ${formatNumber(error_m, error_m < 10 ? 2 : 0)} m`;
   const colour = track.name === '' ? kTruthColour : estimateColour(track.colour);

@@ -56,7 +56,7 @@ describe('the layouts', () => {
   it('begin with the default one', () => {
     const { layouts, said } = open(new FakeStorage());
     expect(layouts.current).toBe('fly');
-    expect(layouts.shared).toBe('fly');
+    expect(layouts.shared).toEqual({ name: 'fly', tree: null });
     expect(said()).toEqual([]);
   });
 
@@ -67,11 +67,11 @@ describe('the layouts', () => {
     first.layouts.onRearranged(kTree);
     const { layouts, arranged } = open(storage);
     expect(layouts.current).toBe('compare');
-    expect(layouts.shared).toBe(null);
+    expect(layouts.shared).toEqual({ name: 'compare', tree: kTree });
     expect(layouts.arrangement(kArea)).toEqual(kTree);
     layouts.reset();
     expect(arranged()).toBe(1);
-    expect(layouts.shared).toBe('compare');
+    expect(layouts.shared).toEqual({ name: 'compare', tree: null });
     expect(layouts.arrangement(kArea)).not.toEqual(kTree);
   });
 
@@ -87,6 +87,35 @@ describe('the layouts', () => {
     layouts.remove('Mine');
     expect(layouts.current).toBe('fly');
     expect(open(storage).layouts.ownNames).toEqual([]);
+  });
+
+  it('open the layout of a link', () => {
+    const { layouts, arranged } = open(new FakeStorage());
+    layouts.open({ name: null, tree: null });
+    layouts.open({ name: 'fly', tree: null });
+    layouts.open({ name: 'nonsense', tree: null });
+    expect(arranged(), 'is shown already, or there is none').toBe(0);
+    layouts.open({ name: 'camera', tree: kTree });
+    expect(layouts.current).toBe('camera');
+    expect(layouts.shared).toEqual({ name: 'camera', tree: kTree });
+    expect(arranged()).toBe(1);
+    layouts.open({ name: 'camera', tree: structuredClone(kTree) });
+    expect(arranged(), 'the same again').toBe(1);
+    layouts.open({ name: 'camera', tree: null });
+    expect(layouts.shared).toEqual({ name: 'camera', tree: null });
+    layouts.open({ name: 'nonsense', tree: kTree });
+    expect(layouts.shared).toEqual({ name: 'fly', tree: kTree });
+  });
+
+  it('recognise an own layout in a link', () => {
+    const { layouts } = open(new FakeStorage());
+    layouts.saveAs('Mine');
+    const { shared } = layouts;
+    expect(shared).toEqual({ name: null, tree: kTree });
+    layouts.choose('compare');
+    layouts.open(shared);
+    expect(layouts.current).toBe('Mine');
+    expect(layouts.isChanged).toBe(false);
   });
 
   it.each(['', '  ', 'Fly', 'x'.repeat(41)])('refuse the name "%s"', (name) => {

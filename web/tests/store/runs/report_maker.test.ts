@@ -1,5 +1,5 @@
 import { describe, expect, it, vi } from 'vitest';
-import { RestError } from '../../../src/connection/rest_client';
+import { RestError } from '../../../src/connection/rest_error';
 import { ReportMaker, kMostReportRuns } from '../../../src/store/runs/report_maker';
 import { Notices } from '../../../src/store/notices';
 import { Store } from '../../../src/store/state';

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import schemaText from '../../../../scenarios/scenario.schema.json?raw';
 import courseText from '../../../../scenarios/course.json?raw';
-import { RestError } from '../../../src/connection/rest_client';
+import { RestError } from '../../../src/connection/rest_error';
 import type { FieldError } from '../../../src/protocol/field_errors';
 import type { JsonObject } from '../../../src/protocol/rest_types';
 import { Notices } from '../../../src/store/notices';

@@ -1,5 +1,5 @@
 import { describe, expect, it, vi } from 'vitest';
-import { RestError } from '../../../src/connection/rest_client';
+import { RestError } from '../../../src/connection/rest_error';
 import type { SweepComparison, SweepFiles } from '../../../src/protocol/sweep_types';
 import { Store } from '../../../src/store/state';
 import { SweepResults } from '../../../src/store/sweeps/sweep_results';

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { fieldErrorsOf, RestError } from '../../../src/connection/rest_client';
+import { fieldErrorsOf, RestError } from '../../../src/connection/rest_error';
 import type { JsonObject } from '../../../src/protocol/rest_types';
 import {
   connectOverrides,

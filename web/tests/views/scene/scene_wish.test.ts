@@ -1,0 +1,28 @@
+import { describe, expect, it } from 'vitest';
+import { sceneWish } from '../../../src/views/scene/scene_wish';
+import { sampleRun } from '../../support/samples';
+import { Viewing } from '../../support/viewing';
+
+describe('the picture of the 3D view', () => {
+  it('has the runs of which a track is shown, in the colours of their tracks', () => {
+    const viewing = new Viewing();
+    viewing.watch();
+    const { session, socket, store } = viewing;
+    for (const id of ['r2', 'r3']) {
+      session.addRun(id);
+      socket.receive({ type: 'run', run: sampleRun({ id, estimators: ['a', 'b'] }) });
+    }
+    const others = () => sceneWish(store.state)[0]?.with;
+    const [r2, r3] = [
+      { run: 'r2', first_colour: 1 },
+      { run: 'r3', first_colour: 3 },
+    ];
+    expect(others()).toEqual([r2, r3]);
+    for (const name of ['', 'a']) session.showTrack('r2', name, false);
+    expect(others(), 'b is shown').toEqual([r2, r3]);
+    session.showTrack('r2', 'b', false);
+    expect(others()).toEqual([r3]);
+    for (const name of ['', 'feature']) session.showTrack('r1', name, false);
+    expect(sceneWish(store.state)[0]?.run, 'the main run stays').toBe('r1');
+  });
+});
