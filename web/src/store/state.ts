@@ -182,6 +182,7 @@ const kTopicNames = [
   'metrics',
   'estimators',
   'playback',
+  'plotTime',
   'pictures',
   'zoom',
   'hover',

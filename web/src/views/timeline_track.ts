@@ -25,6 +25,8 @@ export class TimelineTrack {
   private readonly flight = h('div', { class: 'flight-lane', 'data-role': 'flight-lane' });
   private readonly strips = h('canvas', { class: 'strips' });
   private readonly head = h('div', { class: 'head' });
+  /** What the plots show if they do not show everything. */
+  private readonly plotted = h('div', { class: 'plotted', 'data-role': 'plotted', hidden: true });
   private readonly tip = h('div', { class: 'tip', hidden: true });
   private readonly faults = h('canvas', { class: 'fault-lane' });
   private readonly legend = h('div', { class: 'fault-legend', 'data-role': 'fault-legend' });
@@ -44,6 +46,7 @@ export class TimelineTrack {
       this.flight,
       this.strips,
       this.range,
+      this.plotted,
       this.head,
     );
     this.root = h(
@@ -70,6 +73,9 @@ export class TimelineTrack {
       this.drawFlight();
     }
     if (changed.has('playback') || changed.has('run')) this.moveHead();
+    if (['plotTime', 'playback', 'run'].some((topic) => changed.has(topic as Topic))) {
+      this.markPlotted();
+    }
   }
 
   /** Share of the bar at a time of the clock. */
@@ -97,6 +103,14 @@ export class TimelineTrack {
     this.root.setAttribute('aria-valuemax', (end_ns / 1e9).toFixed(3));
     this.root.setAttribute('aria-valuenow', (t_ns / 1e9).toFixed(3));
     this.root.setAttribute('aria-valuetext', formatTime(t_ns));
+  }
+
+  private markPlotted(): void {
+    const { part_s } = this.context.plotTime;
+    this.plotted.hidden = part_s === null;
+    if (part_s !== null) {
+      place(this.plotted, this.share(part_s[0] * 1e9), this.share(part_s[1] * 1e9));
+    }
   }
 
   private drawStrips(): void {

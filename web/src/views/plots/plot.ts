@@ -1,7 +1,7 @@
-// One plot of curves over time with a playback cursor. A click or drag seeks.
+// One plot of curves over time with a playback cursor.
 import uPlot from 'uplot';
 import { curveStyle } from '../colours';
-import { h, promptlyPerFrame, setText } from '../dom';
+import { h, setText } from '../dom';
 import { paint } from '../paint';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
@@ -9,16 +9,20 @@ import { decimated, valueAt } from '../../store/plots/curve';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
+import { paintCurves } from './curve_painter';
+import { steerTime } from './time_gestures';
 
 export interface PlotActions {
   onSeek: (t_s: number) => void;
   onHover: (t_s: number | null) => void;
-  /** A factor above 1 zooms in; 0 shows all. */
+  /** A factor below 1 shows less. */
   onZoom: (centre_s: number, factor: number) => void;
+  /** To later times, or to earlier ones. */
+  onPan: (by_s: number) => void;
+  onWhole: () => void;
 }
 
 const kFont = '10px system-ui, sans-serif';
-const kZoom_per_px = 0.0015;
 /** Beyond this many, the values of all curves do not fit next to the title. */
 const kMostReadouts = 6;
 const kSyncKey = 'overfly-plots';
@@ -26,6 +30,11 @@ const kSyncKey = 'overfly-plots';
 /** Width of the plotting area, from uPlot's own numbers: asking the element causes a layout. */
 function plotWidth_px(plot: uPlot): number {
   return plot.bbox.width / uPlot.pxRatio;
+}
+
+/** uPlot draws the axes for two times without values. */
+function axesData(span_s: Span): uPlot.AlignedData {
+  return [[...span_s], [null, null]];
 }
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
@@ -69,10 +78,9 @@ export class Plot {
       h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);
-    const data = [[0, 1], ...curves.map(() => [null, null])] as uPlot.AlignedData;
-    this.plot = new uPlot(this.uplotOptions(timeLabels, leads), data, this.area);
+    this.plot = new uPlot(this.uplotOptions(timeLabels, leads), axesData([0, 1]), this.area);
     this.plot.over.append(this.cursor);
-    this.seekable(this.plot.over);
+    this.steer(this.plot.over);
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
@@ -86,9 +94,7 @@ export class Plot {
       return now === null ? { t_s: [], values: [] } : decimated(now, span_s, pixels);
     });
     this.range = paddedRange(...this.extremes(), least);
-    const ends = [...span_s];
-    // uPlot draws the axes for these two times; the curves are drawn by `path`.
-    this.plot.setData([ends, ...curves.map(() => [null, null])] as uPlot.AlignedData, true);
+    this.plot.setData(axesData(span_s), true);
   }
 
   /** Draws the same again, in the colours of the theme. */
@@ -139,35 +145,31 @@ export class Plot {
   private extremes(): [number, number] {
     let low = Infinity;
     let high = -Infinity;
+    const [begin_s, end_s] = this.span_s;
     for (const { t_s, values } of this.lines) {
-      values.forEach((value, i) => {
+      for (let i = 0; i < t_s.length; i += 1) {
         const t = t_s[i] ?? NaN;
-        if (t < this.span_s[0] || t > this.span_s[1]) return;
+        const value = values[i] ?? NaN;
+        if (t < begin_s || t > end_s) continue;
         if (value < low) low = value;
         if (value > high) high = value;
-      });
+      }
     }
     return [low, high];
   }
 
-  private path(plot: uPlot, line: Polyline | undefined): uPlot.Series.Paths {
-    const stroke = new Path2D();
-    let drawing = false;
-    line?.t_s.forEach((t_s, i) => {
-      const value = line.values[i] ?? NaN;
-      if (Number.isNaN(value)) {
-        drawing = false;
-        return;
-      }
-      const x = plot.valToPos(t_s, 'x', true);
-      const y = plot.valToPos(value, 'y', true);
-      if (drawing) stroke.lineTo(x, y);
-      else stroke.moveTo(x, y);
-      // A single point is drawn as well.
-      if (!drawing) stroke.lineTo(x + 0.01, y);
-      drawing = true;
-    });
-    return { stroke };
+  private paintCurves({ ctx, bbox }: uPlot): void {
+    const [begin_s, end_s] = this.span_s;
+    const [least, greatest] = this.range;
+    const scale = {
+      left: bbox.left,
+      top: bbox.top,
+      begin_s,
+      greatest,
+      px_per_s: bbox.width / (end_s - begin_s),
+      px_per_unit: bbox.height / (greatest - least),
+    };
+    paintCurves(ctx, this.spec.curves, this.lines, bbox, scale, uPlot.pxRatio);
   }
 
   private fit(): void {
@@ -183,28 +185,19 @@ export class Plot {
     if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
-  private seekable(over: HTMLElement): void {
-    const seek = promptlyPerFrame((x: number) => this.actions.onSeek(this.plot.posToVal(x, 'x')));
-    const seekTo = (event: PointerEvent) => seek(event.clientX - over.getBoundingClientRect().left);
-    over.addEventListener('pointerdown', (event) => {
-      if (event.button !== 0) return;
-      over.setPointerCapture(event.pointerId);
-      seekTo(event);
-    });
-    over.addEventListener('pointermove', (event) => {
-      if (over.hasPointerCapture(event.pointerId)) seekTo(event);
-    });
-    over.addEventListener(
-      'wheel',
-      (event) => {
-        event.preventDefault();
-        const x = event.clientX - over.getBoundingClientRect().left;
-        this.actions.onZoom(this.plot.posToVal(x, 'x'), Math.exp(event.deltaY * kZoom_per_px));
+  private steer(over: HTMLElement): void {
+    const { onSeek, onZoom, onPan, onWhole, onHover } = this.actions;
+    const timeAt = (x_px: number) => this.plot.posToVal(x_px, 'x');
+    steerTime(over, {
+      seek: (x_px) => onSeek(timeAt(x_px)),
+      zoom: (x_px, factor) => onZoom(timeAt(x_px), factor),
+      pan: (dx_px) => {
+        const [low, high] = this.span_s;
+        onPan((-dx_px * (high - low)) / plotWidth_px(this.plot));
       },
-      { passive: false },
-    );
-    over.addEventListener('dblclick', () => this.actions.onZoom(0, 0));
-    over.addEventListener('pointerleave', () => this.actions.onHover(null));
+      showWhole: onWhole,
+    });
+    over.addEventListener('pointerleave', () => onHover(null));
   }
 
   private drawLimit(plot: uPlot): void {
@@ -250,23 +243,15 @@ export class Plot {
           : { ...axis, size: 0, ticks: { show: false }, values: () => [], space: 44 },
         { ...axis, size: 40, gap: 3, ticks: { show: false }, space: 20 },
       ],
-      series: [
-        {},
-        ...this.spec.curves.map(({ hue, name }, i) => {
-          const { colour, width_px, dash } = curveStyle(hue);
-          return {
-            label: name,
-            stroke: () => paint(colour),
-            width: width_px,
-            dash,
-            paths: (plot: uPlot) => this.path(plot, this.lines[i]),
-            points: { show: false },
-          };
-        }),
-      ],
+      // uPlot draws the axes; the curves are drawn over them.
+      series: [{}, { paths: () => null, points: { show: false } }],
       hooks: {
-        // The scales match the data only now.
-        draw: [(plot: uPlot) => this.placeCursor(plot), (plot: uPlot) => this.drawLimit(plot)],
+        draw: [
+          (plot: uPlot) => this.paintCurves(plot),
+          (plot: uPlot) => this.drawLimit(plot),
+          // The scales match the data only now.
+          (plot: uPlot) => this.placeCursor(plot),
+        ],
         setCursor: [
           (plot: uPlot) => {
             const { left } = plot.cursor;

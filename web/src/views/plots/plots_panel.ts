@@ -4,9 +4,7 @@ import { needsAttention } from '../../store/estimator_status';
 import { formatTime } from '../../store/format';
 import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
-import type { Span } from '../../store/time_window';
-import { following, zoomed } from '../../store/time_window';
-import { clockSpan_ns, shownAlignment } from '../../store/state';
+import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
 import { EstimatorTable } from '../estimator_table';
@@ -14,6 +12,7 @@ import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
+import { takeTimeKeys } from './time_commands';
 import { Plot } from './plot';
 import { kPathAxes, PathPlot } from './path_plot';
 import type { ShownPlots } from './plot_files';
@@ -45,6 +44,9 @@ type PanelGroup = 'errors' | 'image';
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
 
+const kGridLabel =
+  'Plots over time: move with left and right, zoom with plus and minus, 0 shows the whole flight';
+
 const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'>, string>> = {
   pose: 'No track is shown.',
   errors: 'No errors yet: they begin with the first pose of an estimator.',
@@ -56,7 +58,18 @@ const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'>, string>> = {
 export class PlotsPanel implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
-  private readonly grid = h('div', { class: 'plot-grid' });
+  private readonly grid = h('div', { class: 'plot-grid', role: 'group' });
+  private readonly whole = h(
+    'button',
+    {
+      class: 'tab',
+      'data-role': 'whole-flight',
+      title:
+        'Shows the whole flight in all plots (double click in a plot; 0 with the focus on them)',
+      onclick: () => this.context.plotTime.showWhole(),
+    },
+    'Whole flight',
+  );
   private readonly statuses = new EstimatorTable();
   private readonly tabs = h('span', { class: 'tabs' });
   private readonly alignment = h('span', {
@@ -70,13 +83,12 @@ export class PlotsPanel implements View {
   private plots: Plot[] = [];
   private readonly paths: readonly PathPlot[];
   private key = '';
-  private runs = '';
+  /** Of the panel: asking for it in each frame causes a layout. */
+  private width_px = 0;
   private drawn_ms = -Infinity;
   private timer = 0;
   /** Time under the mouse. */
   private hovered_s: number | null = null;
-  /** The part zoomed to; null = the whole flight. */
-  private window_s: Span | null = null;
 
   /** @param only  shows only this group, as a panel of its own */
   constructor(
@@ -94,11 +106,15 @@ export class PlotsPanel implements View {
     );
     if (only !== null) this.group = only;
     else this.panel.tools.append(this.tabs);
-    this.panel.tools.append(this.files, this.alignment, this.hoverTime);
+    this.panel.tools.append(this.whole, this.files, this.alignment, this.hoverTime);
+    takeTimeKeys(this.grid, context.plotTime);
     this.panel.body.append(this.grid, this.statuses.root);
     this.root = this.panel.root;
     this.build();
-    new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
+    new ResizeObserver(() => {
+      this.width_px = this.panel.body.clientWidth;
+      this.drawSoon();
+    }).observe(this.panel.body);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -108,7 +124,9 @@ export class PlotsPanel implements View {
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
     if (changed.has('theme')) for (const plot of [...this.plots, ...this.paths]) plot.repaint();
-    if (changed.has('playback')) this.followCursor();
+    if (changed.has('playback')) this.context.plotTime.follow();
+    // While it is moved, every frame counts.
+    if (changed.has('plotTime')) this.draw();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
 
@@ -129,14 +147,15 @@ export class PlotsPanel implements View {
   private draw(): void {
     const { state } = this.context.store;
     if (this.group === 'sensors' && state.runId !== null) {
-      this.context.sensors.show(state.runId, this.window_s);
+      this.context.sensors.show(state.runId, this.context.plotTime.part_s);
     } else {
       this.onHidden();
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
-    const span_s = this.window_s ?? this.whole();
-    for (const plot of this.plots) plot.draw(span_s);
+    const { part_s, shown_s } = this.context.plotTime;
+    this.whole.disabled = part_s === null;
+    for (const plot of this.plots) plot.draw(shown_s);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
@@ -152,27 +171,6 @@ export class PlotsPanel implements View {
     return sensors === null
       ? 'Reading the samples'
       : 'This aircraft has no sensors except its cameras.';
-  }
-
-  private whole(): Span {
-    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
-    return [begin_ns / 1e9, end_ns / 1e9];
-  }
-
-  private zoom(centre_s: number, factor: number): void {
-    const whole = this.whole();
-    this.window_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
-    this.drawSoon();
-  }
-
-  /** Keeps the cursor inside the window. */
-  private followCursor(): void {
-    const { clock } = this.context.store.state;
-    if (this.window_s === null || clock === null) return;
-    const moved = following(this.window_s, this.whole(), clock.t_ns / 1e9);
-    if (moved === this.window_s) return;
-    this.window_s = moved;
-    this.drawSoon();
   }
 
   /** Unchanged as long as the plots need not be rebuilt. */
@@ -195,14 +193,14 @@ export class PlotsPanel implements View {
     return {
       group,
       specs,
-      span_s: this.window_s ?? this.whole(),
+      span_s: this.context.plotTime.shown_s,
       columns: this.columns(specs.length),
     };
   }
 
   /** As many as fit; few plots lie below each other. */
   private columns(plots: number): number {
-    const fitting = Math.floor(this.panel.body.clientWidth / kLeastWidth_px);
+    const fitting = Math.floor(this.width_px / kLeastWidth_px);
     return plots <= kFew ? 1 : Math.min(kMostColumns, Math.max(1, fitting));
   }
 
@@ -212,10 +210,8 @@ export class PlotsPanel implements View {
   }
 
   private build(): void {
-    const { state } = this.context.store;
-    const runs = state.watched.map(({ id }) => id).join(' ');
-    if (runs !== this.runs) this.window_s = null;
-    this.runs = runs;
+    const { plotTime, store } = this.context;
+    const { state } = store;
     this.key = this.wantedKey();
     for (const plot of this.plots) plot.destroy();
     // The mouse does not leave a plot that is removed.
@@ -223,7 +219,9 @@ export class PlotsPanel implements View {
     const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
       onHover: (t_s: number | null) => this.hover(t_s),
-      onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
+      onZoom: (centre_s, factor) => plotTime.zoom(centre_s, factor),
+      onPan: (by_s) => plotTime.pan(by_s),
+      onWhole: () => plotTime.showWhole(),
     };
     const specs = this.specs();
     const columns = this.columns(specs.length);
@@ -236,6 +234,10 @@ export class PlotsPanel implements View {
     this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
     this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
     if (this.group === 'path') this.grid.removeAttribute('style');
+    const overTime = specs.length > 0;
+    this.whole.hidden = !overTime;
+    setAttribute(this.grid, 'tabindex', overTime ? '0' : null);
+    setAttribute(this.grid, 'aria-label', overTime ? kGridLabel : null);
     this.grid.hidden = this.group === 'estimators';
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);

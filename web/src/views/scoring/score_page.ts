@@ -18,7 +18,7 @@ import type { Topic } from '../../store/state';
 import type { TextFormat } from '../../store/table_text';
 import { kTextFormats } from '../../store/table_text';
 import type { Span } from '../../store/time_window';
-import { zoomed } from '../../store/time_window';
+import { panned, zoomed } from '../../store/time_window';
 import { copyText } from '../clipboard';
 import { estimateColour } from '../colours';
 import { h, rebuild, setText } from '../dom';
@@ -187,7 +187,10 @@ export class ScorePageView implements View {
     const actions: PlotActions = {
       onSeek: moveTo,
       onHover: moveTo,
-      onZoom: (centre_s, factor) => this.zoom(centre_s, factor),
+      onZoom: (centre_s, factor) =>
+        this.move((span_s, whole) => zoomed(span_s, whole, centre_s, factor)),
+      onPan: (by_s) => this.move((span_s, whole) => panned(span_s, whole, by_s)),
+      onWhole: () => this.move(() => null),
     };
     this.plots = specs.map(
       (spec, i) =>
@@ -198,11 +201,12 @@ export class ScorePageView implements View {
     this.grid.replaceChildren(...this.plots.map(({ root }) => root));
   }
 
-  private zoom(centre_s: number, factor: number): void {
+  /** Shows another part of the time; null = all of it. */
+  private move(to: (span_s: Span, whole: Span) => Span | null): void {
     const { series } = this.context.store.state.scorePage;
     if (series === null) return;
     const whole = scoreSpan(series);
-    this.window_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
+    this.window_s = to(this.window_s ?? whole, whole);
     this.drawPlots();
   }
 

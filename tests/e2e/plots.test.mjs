@@ -1,0 +1,166 @@
+// The plots of two flights with three estimators each: moved in time, read, saved.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, before, describe } from 'node:test';
+import { browserMissing } from './support/browser.mjs';
+import { flyCourse } from './support/flights.mjs';
+import { serverMissing } from './support/server.mjs';
+import { openStage } from './support/stage.mjs';
+import { makeStep } from './support/steps.mjs';
+
+const kIds = ['20260101-000001-slow', '20260101-000002-fast'];
+const kEstimators = ['first', 'second', 'third'];
+const kPanels = ['plots'];
+
+let dashboard;
+const step = makeStep(() => dashboard);
+const skip = serverMissing() || browserMissing();
+
+/** Changes the answers of an estimator: it initialises, is lost in the middle, and misses ten frames. */
+function disturb(folder, name) {
+  const file = path.join(folder, 'estimates', `${name}.jsonl`);
+  const lines = readFileSync(file, 'utf8').trimEnd().split('\n');
+  const changed = lines.map((line, frame) => {
+    const { t_ns } = JSON.parse(line);
+    if (frame < 31) return JSON.stringify({ frame, map_id: 0, state: 'INITIALISING', t_ns });
+    if (frame >= 310 && frame < 341) return JSON.stringify({ frame, map_id: 0, state: 'LOST', t_ns });
+    if (frame >= 400 && frame < 410) return JSON.stringify({ frame, t_ns, dropped: true });
+    return line;
+  });
+  writeFileSync(file, `${changed.join('\n')}\n`);
+}
+
+function fly(runs) {
+  for (const [i, id] of kIds.entries()) {
+    const estimators = kEstimators.map((name, k) => ({
+      name,
+      type: 'drifting',
+      parameters: { drift: 0.01 * (k + 1) * (i + 1) },
+    }));
+    flyCourse(runs, id, [
+      'duration_s=20',
+      `flight.course.airspeed_m_s=${20 + 5 * i}`,
+      'camera.width_px=160',
+      'camera.height_px=120',
+      `estimators=${JSON.stringify(estimators)}`,
+    ]);
+    disturb(path.join(runs, id), 'second');
+  }
+  return {};
+}
+
+describe('the plots', { skip, timeout: 600_000 }, () => {
+  let stage;
+  let page;
+
+  before(async () => {
+    stage = await openStage({ width: 1600, height: 900 }, fly);
+    dashboard = stage.dashboard;
+    page = dashboard.page;
+    await page.goto('about:blank');
+    await dashboard.open(`${stage.server.address}#run=${kIds[0]}&run=${kIds[1]}&t=12`);
+    await dashboard.untilFrames(kPanels);
+    await dashboard.untilSettled();
+    await page.locator('.dv-groupview:has([data-panel=plots]) .enlarge').click();
+    await dashboard.untilSettled();
+  });
+
+  after(() => stage?.close());
+
+  const chooseGroup = (name) => page.locator(`.tab[data-group=${name}]`).click();
+  const whole = () => page.locator('[data-role=whole-flight]');
+  const plotBox = (key) => page.locator(`.plot[data-axis=${key}] .u-over`).boundingBox();
+  /** The part of the flight that is shown, in % of the time line: begin and width; null = everything. */
+  const part = () =>
+    page.locator('[data-role=plotted]').evaluate(({ hidden, style }) =>
+      hidden ? null : [Number.parseFloat(style.left), Number.parseFloat(style.width)],
+    );
+  /** Acts, and waits until another part is shown. */
+  const moved = async (act) => {
+    const before = JSON.stringify(await part());
+    await act();
+    await dashboard.until((old) => {
+      const { hidden, style } = document.querySelector('[data-role=plotted]');
+      const now = hidden ? null : [Number.parseFloat(style.left), Number.parseFloat(style.width)];
+      return JSON.stringify(now) !== old;
+    }, before);
+    return part();
+  };
+
+  step('zooms with the wheel and moves with Shift', async () => {
+    assert.equal(await part(), null);
+    assert.ok(await whole().isDisabled());
+    const { x, y, width, height } = await plotBox('x_m');
+    const middle = [x + width / 2, y + height / 2];
+    await page.mouse.move(...middle);
+    for (let i = 0; i < 8; i += 1) await page.mouse.wheel(0, -100);
+    await dashboard.until(() => document.querySelector('[data-role=plotted]').style.width < '40');
+    const zoomed = await part();
+    const { t_ns } = await dashboard.playback();
+    await page.keyboard.down('Shift');
+    const dragged = await moved(async () => {
+      await page.mouse.down();
+      await page.mouse.move(middle[0] + width / 4, middle[1], { steps: 4 });
+      await page.mouse.up();
+    });
+    await page.keyboard.up('Shift');
+    assert.ok(dragged[0] < zoomed[0], `${dragged} after ${zoomed}`);
+    assert.ok(Math.abs(dragged[1] - zoomed[1]) < 0.01);
+    const wheeled = await moved(() => page.mouse.wheel(120, 0));
+    assert.ok(wheeled[0] > dragged[0], 'a wheel turned to the right shows later times');
+    assert.equal((await dashboard.playback()).t_ns, t_ns, 'moving does not seek');
+  });
+
+  step('moves with the middle button, and with two fingers', async () => {
+    const { x, y, width, height } = await plotBox('roll_deg');
+    const [left, top] = [x + width / 2, y + height / 2];
+    await page.mouse.move(left, top);
+    const before = await part();
+    const dragged = await moved(async () => {
+      await page.mouse.down({ button: 'middle' });
+      await page.mouse.move(left + 40, top, { steps: 3 });
+      await page.mouse.up({ button: 'middle' });
+    });
+    assert.ok(dragged[0] < before[0]);
+    const touch = await page.context().newCDPSession(page);
+    const fingers = (type, ...places) =>
+      touch.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: places.map((at, id) => ({ x: at, y: top, id })),
+      });
+    const { t_ns } = await dashboard.playback();
+    const pinched = await moved(async () => {
+      await fingers('touchStart', left - 30);
+      await fingers('touchStart', left - 30, left + 30);
+      await fingers('touchMove', left - 90, left + 30);
+      await fingers('touchMove', left - 90, left + 90);
+      await fingers('touchEnd');
+    });
+    assert.ok(pinched[1] < dragged[1] / 2, 'two fingers zoom in');
+    assert.equal((await dashboard.playback()).t_ns, t_ns, 'two fingers do not seek');
+  });
+
+  step('moves with the keys, and shows the whole flight again', async () => {
+    await page.locator('[data-panel=plots] .plot-grid').focus();
+    const before = await part();
+    const later = await moved(() => page.keyboard.press('ArrowRight'));
+    assert.ok(later[0] > before[0]);
+    const { frame } = await dashboard.playback();
+    const nearer = await moved(() => page.keyboard.press('+'));
+    assert.ok(nearer[1] < later[1]);
+    assert.equal((await dashboard.playback()).frame, frame, 'the keys do not step');
+    assert.ok(await whole().isEnabled());
+    await dashboard.screenshot('plots_zoomed');
+    await whole().click();
+    await dashboard.until(() => document.querySelector('[data-role=plotted]').hidden);
+    assert.ok(await whole().isDisabled());
+    await page.keyboard.press('Control+k');
+    await page.keyboard.type('Plots: zoom in');
+    await page.keyboard.press('Enter');
+    await dashboard.until(() => !document.querySelector('[data-role=plotted]').hidden);
+    const { x, y, width, height } = await plotBox('z_m');
+    await page.mouse.dblclick(x + width / 2, y + height / 2);
+    await dashboard.until(() => document.querySelector('[data-role=plotted]').hidden);
+  });
+});
