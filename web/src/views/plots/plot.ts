@@ -5,7 +5,8 @@ import { h, setText } from '../dom';
 import { paint } from '../paint';
 import { formatNumber } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
-import { decimated, valueAt } from '../../store/plots/curve';
+import { valueAt } from '../../store/plots/curve';
+import { CurveWindow } from '../../store/plots/curve_window';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
@@ -25,6 +26,7 @@ export interface PlotActions {
 const kFont = '10px system-ui, sans-serif';
 /** Beyond this many, the values of all curves do not fit next to the title. */
 const kMostReadouts = 6;
+const kNoLine: Polyline = { t_s: [], values: [] };
 const kSyncKey = 'overfly-plots';
 
 /** Width of the plotting area, from uPlot's own numbers: asking the element causes a layout. */
@@ -52,6 +54,7 @@ export class Plot {
   private readonly cursor = h('div', { class: 'plot-cursor' });
   private readonly readouts: HTMLElement[];
   private lines: Polyline[] = [];
+  private readonly windows: readonly CurveWindow[];
   private span_s: Span = [0, 1];
   private range: [number, number] = [0, 1];
   private cursor_s: number | null = null;
@@ -66,6 +69,7 @@ export class Plot {
     { timeLabels, leads }: { timeLabels: boolean; leads: boolean },
   ) {
     const { curves } = spec;
+    this.windows = curves.map(() => new CurveWindow());
     const shown = curves.length > kMostReadouts ? [] : curves;
     this.readouts = shown.map(({ hue, name }) =>
       h('span', { class: 'readout', style: `color:${curveStyle(hue).colour}`, title: name }),
@@ -89,9 +93,9 @@ export class Plot {
     const { curves, least } = this.spec;
     const pixels = Math.max(100, plotWidth_px(this.plot));
     this.span_s = span_s;
-    this.lines = curves.map(({ curve }) => {
+    this.lines = curves.map(({ curve }, i) => {
       const now = curve();
-      return now === null ? { t_s: [], values: [] } : decimated(now, span_s, pixels);
+      return now === null ? kNoLine : (this.windows[i]?.at(now, span_s, pixels) ?? kNoLine);
     });
     this.range = paddedRange(...this.extremes(), least);
     this.plot.setData(axesData(span_s), true);
