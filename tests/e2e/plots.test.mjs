@@ -163,4 +163,35 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     await page.mouse.dblclick(x + width / 2, y + height / 2);
     await dashboard.until(() => document.querySelector('[data-role=plotted]').hidden);
   });
+
+  step('shows the value of every curve, also of eight', async () => {
+    // Away from the plots the values are those at the clock's time.
+    await dashboard.seekAt('.track .bar', 0.8, kPanels);
+    await page.mouse.move(2, 2);
+    const readouts = page.locator('.plot[data-axis=y_m] .readout');
+    assert.equal(await readouts.count(), 8);
+    await dashboard.until(() =>
+      [...document.querySelectorAll('.plot[data-axis=y_m] .readout')].every((one) =>
+        /^[AB] [−\d]/.test(one.textContent),
+      ),
+    );
+    const { x, y, width, height } = await plotBox('y_m');
+    await page.mouse.move(x + width * 0.9, y + height * 0.9);
+    const tip = page.locator('[data-role=plot-tip]');
+    await tip.waitFor();
+    const rows = await tip.locator('.plot-tip-rows > div').allInnerTexts();
+    const names = ['A truth', 'B truth', ...kEstimators.flatMap((one) => [`A ${one}`, `B ${one}`])];
+    const texts = rows.map((text) => text.split('\n'));
+    assert.deepEqual(texts.map(([name]) => name).sort(), names.sort());
+    const values = texts.map(([, value]) => Number(/^([−\d.]+) m$/.exec(value)[1].replace('−', '-')));
+    assert.deepEqual(values, [...values].sort((a, b) => b - a), 'from top to bottom');
+    assert.equal(await tip.locator('[data-nearest]').innerText(), rows.at(-1), 'the lowest is nearest');
+    await dashboard.screenshot('plots_values');
+    await page.mouse.move(x + width * 0.9, y + 2);
+    await dashboard.until(
+      () => document.querySelector('.plot-tip-rows > div')?.dataset.nearest === 'true',
+    );
+    await page.mouse.move(2, 2);
+    await tip.waitFor({ state: 'hidden' });
+  });
 });

@@ -1,9 +1,9 @@
 // One plot of curves over time with a playback cursor.
 import uPlot from 'uplot';
 import { curveStyle } from '../colours';
-import { h, setText } from '../dom';
+import { h, perFrame, setText } from '../dom';
 import { paint } from '../paint';
-import { formatNumber } from '../../store/format';
+import { formatNumber, formatTime } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { valueAt } from '../../store/plots/curve';
 import { CurveWindow } from '../../store/plots/curve_window';
@@ -11,6 +11,7 @@ import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
 import { paintCurves } from './curve_painter';
+import { plotTip } from './plot_tip';
 import { steerTime } from './time_gestures';
 
 export interface PlotActions {
@@ -24,8 +25,8 @@ export interface PlotActions {
 }
 
 const kFont = '10px system-ui, sans-serif';
-/** Beyond this many, the values of all curves do not fit next to the title. */
-const kMostReadouts = 6;
+/** Beyond this many, the values of all curves are reached by scrolling. */
+export const kMostReadouts = 6;
 const kNoLine: Polyline = { t_s: [], values: [] };
 const kSyncKey = 'overfly-plots';
 
@@ -41,7 +42,7 @@ function axesData(span_s: Span): uPlot.AlignedData {
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: PlotSpec['curves']): string {
-  if (curves.length > kMostReadouts) return '';
+  if (curves.length > kMostReadouts) return ' own-rows many';
   const named = curves.some(({ short }) => short !== '');
   if (curves.length > 3 || (named && curves.length === 2)) return ' own-rows';
   return curves.length === 3 ? ' crowded' : '';
@@ -70,8 +71,7 @@ export class Plot {
   ) {
     const { curves } = spec;
     this.windows = curves.map(() => new CurveWindow());
-    const shown = curves.length > kMostReadouts ? [] : curves;
-    this.readouts = shown.map(({ hue, name }) =>
+    this.readouts = curves.map(({ hue, name }) =>
       h('span', { class: 'readout', style: `color:${curveStyle(hue).colour}`, title: name }),
     );
     const title = h(
@@ -124,16 +124,19 @@ export class Plot {
 
   /** Values at the time under the mouse. */
   showHover(t_s: number): void {
-    this.showValues(
-      this.spec.curves.map(({ curve }) => {
-        const now = curve();
-        return now === null ? null : valueAt(now, t_s);
-      }),
-    );
+    this.showValues(this.valuesAt(t_s));
   }
 
   destroy(): void {
+    plotTip.hide();
     this.plot.destroy();
+  }
+
+  private valuesAt(t_s: number): (number | null)[] {
+    return this.spec.curves.map(({ curve }) => {
+      const now = curve();
+      return now === null ? null : valueAt(now, t_s);
+    });
   }
 
   private showValues(values: (number | null)[]): void {
@@ -201,7 +204,30 @@ export class Plot {
       },
       showWhole: onWhole,
     });
-    over.addEventListener('pointerleave', () => onHover(null));
+    const point = perFrame((event: PointerEvent | null) => this.pointAt(event));
+    over.addEventListener('pointermove', (event) => point(event));
+    over.addEventListener('pointerleave', () => {
+      onHover(null);
+      point(null);
+    });
+  }
+
+  /** A plot with one curve has its value beside its title. */
+  private pointAt(event: PointerEvent | null): void {
+    const { spec, plot } = this;
+    const steers = (event?.buttons ?? 0) !== 0;
+    if (event === null || steers || spec.curves.length < 2 || !this.root.isConnected) {
+      plotTip.hide();
+      return;
+    }
+    const { left, top } = plot.over.getBoundingClientRect();
+    const t_s = plot.posToVal(event.clientX - left, 'x');
+    plotTip.show(spec, this.valuesAt(t_s), {
+      x: event.clientX,
+      y: event.clientY,
+      time: formatTime(t_s * 1e9),
+      value: plot.posToVal(event.clientY - top, 'y'),
+    });
   }
 
   private drawLimit(plot: uPlot): void {

@@ -13,7 +13,7 @@ import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
 import { takeTimeKeys } from './time_commands';
-import { Plot } from './plot';
+import { kMostReadouts, Plot } from './plot';
 import { kPathAxes, PathPlot } from './path_plot';
 import type { ShownPlots } from './plot_files';
 import { plotFilesMenu } from './plot_files';
@@ -25,6 +25,8 @@ const kFew = 3;
 /** A plot with axis, title and values. Below this the panel scrolls. */
 const kLeastWidth_px = 190;
 const kLeastHeight_px = 92;
+/** More for values in rows of their own. */
+const kLeastHeightOfMany_px = 124;
 
 const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
@@ -232,7 +234,9 @@ export class PlotsPanel implements View {
     );
     const down = Math.ceil(specs.length / columns);
     this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
-    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
+    const many = specs.some(({ curves }) => curves.length > kMostReadouts);
+    const least_px = many ? kLeastHeightOfMany_px : kLeastHeight_px;
+    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${least_px}px, 1fr))`;
     if (this.group === 'path') this.grid.removeAttribute('style');
     const overTime = specs.length > 0;
     this.whole.hidden = !overTime;
