@@ -194,4 +194,82 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     await page.mouse.move(2, 2);
     await tip.waitFor({ state: 'hidden' });
   });
+
+  const save = async (panel, format) => {
+    const [download] = await Promise.all([
+      page.waitForEvent('download'),
+      page.locator(`.dv-groupview:has([data-panel=${panel}]) .plot-files`).selectOption(format),
+    ]);
+    return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+  };
+  /** Size of an SVG file as the browser shows it, and how many of its pixels are not the background's. */
+  const rendered = (svg) =>
+    page.evaluate(async (text) => {
+      const problems = new DOMParser().parseFromString(text, 'image/svg+xml').querySelectorAll('parsererror');
+      const image = new Image();
+      image.src = URL.createObjectURL(new Blob([text], { type: 'image/svg+xml' }));
+      await image.decode();
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const pen = canvas.getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+      let drawn = 0;
+      for (let i = 4; i < data.length; i += 4) {
+        if ([0, 1, 2].some((k) => data[i + k] !== data[k])) drawn += 1;
+      }
+      return { problems: problems.length, width: canvas.width, height: canvas.height, drawn };
+    }, svg);
+  /** Saves every format of a panel and looks at the files. @return the CSV's lines */
+  const saveAll = async (panel, name, words) => {
+    const [csv, svg, png] = [await save(panel, 'csv'), await save(panel, 'svg'), await save(panel, 'png')];
+    assert.deepEqual([csv.name, svg.name, png.name], ['csv', 'svg', 'png'].map((end) => `overfly-${name}.${end}`));
+    const text = svg.bytes.toString();
+    writeFileSync(new URL(`./screenshots/saved_${name}.png`, import.meta.url), png.bytes);
+    const { problems, width, height, drawn } = await rendered(text);
+    assert.equal(problems, 0);
+    assert.ok(drawn > 2000, `${drawn} pixels of ${name} are drawn`);
+    for (const word of words) assert.ok(text.includes(word), `${word} is in the file`);
+    assert.ok(!text.includes('var('), 'a file has colours, no variables');
+    assert.equal(png.bytes.readUInt32BE(16), 2 * width, 'width of the PNG');
+    assert.equal(png.bytes.readUInt32BE(20), 2 * height, 'height of the PNG');
+    return csv.bytes.toString().trimEnd().split('\n');
+  };
+
+  step('saves paths', async () => {
+    await chooseGroup('path');
+    await page.locator('.path-plot').first().waitFor();
+    await dashboard.untilSettled();
+    const lines = await saveAll('plots', 'path', ['From above', 'From the south', 'A truth', 'B third']);
+    assert.equal(lines[0], 'run,track,t_s,x_m,y_m,z_m');
+    const truth = lines.filter((line) => line.startsWith(`${kIds[0]},truth,`));
+    assert.equal(truth.length, 621);
+    await chooseGroup('pose');
+  });
+
+  step('saves the 3D plot', async () => {
+    await page.locator('.dv-groupview:has([data-panel=plots]) .enlarge').click();
+    await page.keyboard.press('Control+k');
+    await page.keyboard.type('Show 3D plot');
+    await page.keyboard.press('Enter');
+    await dashboard.until(() => document.querySelector('[data-panel=plot3d]')?.dataset.draws > 0);
+    await dashboard.untilSettled();
+    await page.locator('.dv-groupview:has([data-panel=plot3d]) .enlarge').click();
+    await dashboard.untilSettled();
+    const lines = await saveAll('plot3d', '3d', ['x east [m]', 'z up [m]', 'B second']);
+    assert.ok(lines.length > 8 * 580);
+    await page.locator('.dv-groupview:has([data-panel=plot3d]) .enlarge').click();
+  });
+
+  step('saves the box plots and histograms of repeated flights', async () => {
+    await page.keyboard.press('Control+k');
+    await page.keyboard.type('Show Repeated flights');
+    await page.keyboard.press('Enter');
+    await page.locator('#repeats-choice').selectOption('all');
+    await page.locator('[data-box=third]').waitFor();
+    await dashboard.untilSettled();
+    const lines = await saveAll('repeats', 'repeats', ['Position RMSE [m]', 'second', 'median']);
+    assert.equal(lines[0], 'estimator,run,position_rmse_m');
+    assert.equal(lines.length, 7);
+  });
 });

@@ -5,6 +5,7 @@ import { formatTime } from '../../store/format';
 import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
 import { shownAlignment } from '../../store/state';
+import { tracksCsv } from '../../store/plots/track_files';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
 import { EstimatorTable } from '../estimator_table';
@@ -14,9 +15,9 @@ import { frameOf, makePanel } from '../panel';
 import type { PlotActions } from './plot';
 import { takeTimeKeys } from './time_commands';
 import { kMostReadouts, Plot } from './plot';
-import { kPathAxes, PathPlot } from './path_plot';
-import type { ShownPlots } from './plot_files';
-import { plotFilesMenu } from './plot_files';
+import { besides, kPathAxes, PathPlot } from './path_plot';
+import type { PlotFile } from './plot_files';
+import { saveMenu, timePlotsFile } from './plot_files';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -102,8 +103,8 @@ export class PlotsPanel implements View {
     this.paths = kPathAxes.map(
       (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
     );
-    this.files = plotFilesMenu(
-      () => this.shownPlots(),
+    this.files = saveMenu(
+      () => this.file(),
       (text) => context.notices.error(text),
     );
     if (only !== null) this.group = only;
@@ -188,16 +189,19 @@ export class PlotsPanel implements View {
     return JSON.stringify([this.group, runs, columns, specs.map(specKey)]);
   }
 
-  private shownPlots(): ShownPlots | null {
+  private file(): PlotFile | null {
+    const { group } = this;
+    if (group === 'path') {
+      return {
+        name: group,
+        csv: () => tracksCsv(this.context.store.state),
+        svg: () => besides(this.paths.map((path) => path.drawing())),
+      };
+    }
     const specs = this.specs();
     if (specs.length === 0) return null;
-    const { group } = this;
-    return {
-      group,
-      specs,
-      span_s: this.context.plotTime.shown_s,
-      columns: this.columns(specs.length),
-    };
+    const { shown_s: span_s } = this.context.plotTime;
+    return timePlotsFile({ group, specs, span_s, columns: this.columns(specs.length) });
   }
 
   /** As many as fit; few plots lie below each other. */
@@ -227,7 +231,8 @@ export class PlotsPanel implements View {
     };
     const specs = this.specs();
     const columns = this.columns(specs.length);
-    this.files.hidden = specs.length === 0;
+    this.files.hidden =
+      this.group === 'estimators' || (specs.length === 0 && this.group !== 'path');
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
