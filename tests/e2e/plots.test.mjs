@@ -195,6 +195,62 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     await tip.waitFor({ state: 'hidden' });
   });
 
+  /** Whether something below a plot's curves has a colour, at a share of its width. */
+  const hasBelow = (key, share, colour) =>
+    page.evaluate(
+      ([axis, at, wanted]) => {
+        const plot = document.querySelector(`.plot[data-axis=${axis}]`);
+        const canvas = plot.querySelector('canvas');
+        const [outer, inner] = [canvas, plot.querySelector('.u-over')].map((one) => one.getBoundingClientRect());
+        const ratio = canvas.width / outer.width;
+        const x = Math.floor((inner.left - outer.left + inner.width * at) * ratio);
+        const y = Math.ceil((inner.bottom - outer.top) * ratio);
+        const { data } = canvas.getContext('2d').getImageData(x, y, 1, canvas.height - y);
+        const colours = Array.from({ length: data.length / 4 }, (_, i) => data.slice(4 * i, 4 * i + 4).join(' '));
+        return colours.includes(`${wanted} 255`);
+      },
+      [key, share, colour],
+    );
+
+  step('shows the states of the estimators below the curves and names them', async () => {
+    const legend = page.locator('[data-role=plot-legend]').first();
+    const words = await legend.innerText();
+    for (const word of ['A truth', 'B third', 'initialising', 'tracking', 'lost']) assert.ok(words.includes(word), word);
+    // The second estimator of both runs is lost from 10 to 11 s of 20.
+    const shown = await page.evaluate(() => {
+      const probe = document.createElement('span');
+      document.body.append(probe);
+      const colour = (name) => {
+        probe.style.color = `var(--${name})`;
+        return getComputedStyle(probe).color.match(/\d+/g).slice(0, 3).join(' ');
+      };
+      return { lost: colour('bad'), second: colour('estimate-2') };
+    });
+    for (const plot of ['x_m', 'yaw_deg']) {
+      assert.ok(await hasBelow(plot, 10.5 / 20, shown.lost), `${plot}: lost`);
+      assert.ok(!(await hasBelow(plot, 10.5 / 20, shown.second)), `${plot}: not tracking`);
+      assert.ok(!(await hasBelow(plot, 15 / 20, shown.lost)), `${plot}: not lost`);
+      assert.ok(await hasBelow(plot, 15 / 20, shown.second), `${plot}: tracking`);
+    }
+    const { x, y, width, height } = await plotBox('y_m');
+    await page.mouse.move(x + (width * 10.5) / 20, y + height / 2);
+    await page.locator('.plot-tip-more', { hasText: 'A second: lost' }).waitFor();
+    await dashboard.screenshot('plots_states');
+  });
+
+  step('says on the time line which estimator was in which state, from when to when', async () => {
+    const bar = await page.locator('.track .bar').boundingBox();
+    await page.mouse.move(bar.x + (bar.width * 10.5) / 20, bar.y + bar.height / 2);
+    const tip = page.locator('.track .tip');
+    await tip.filter({ hasText: 'A second: lost 00:10.000 – 00:11.000' }).waitFor();
+    await tip.filter({ hasText: 'B first: tracking 00:00.000 – 00:' }).waitFor();
+    assert.match(await page.locator('[data-role=fault-legend]').innerText(), /initialising\s*tracking\s*lost/);
+    const strips = await page.locator('.track .strips').boundingBox();
+    assert.ok(strips.y >= bar.y - 0.5, 'the strips stay inside the bar');
+    await dashboard.screenshot('timeline_states');
+    await page.mouse.move(2, 2);
+  });
+
   const save = async (panel, format) => {
     const [download] = await Promise.all([
       page.waitForEvent('download'),

@@ -5,6 +5,8 @@ import { kTextureLimit } from '../error_table';
 import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { State } from '../state';
+import type { StateSpan } from '../state_spans';
+import { spansOf } from '../state_spans';
 import type { Table } from '../table';
 import type { Track } from '../tracks';
 import { tracksOf } from '../tracks';
@@ -44,6 +46,18 @@ export interface PlotSpec {
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   curves: CurveSpec[];
+  /** Below the curves. */
+  lanes?: readonly StateLane[];
+}
+
+/** The states of an estimate over time. */
+export interface StateLane {
+  name: string;
+  hue: CurveHue;
+  /** As they are now, in times of the run. */
+  spans: () => readonly StateSpan[];
+  /** Seconds of the clock at the beginning of the run. */
+  offset_s: number;
 }
 
 export const kAxisLabels: Readonly<Record<Axis, string>> = {
@@ -76,8 +90,24 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
 };
 
 export function plotSpecs(state: State, group: PlotGroup): PlotSpec[] {
-  if (group === 'pose') return poseSpecs(state);
-  return group === 'sensors' ? sensorSpecs(state) : seriesSpecs(state, group);
+  if (group === 'sensors') return sensorSpecs(state);
+  const specs = group === 'pose' ? poseSpecs(state) : seriesSpecs(state, group);
+  const lanes = kOfEstimates.includes(group) ? stateLanes(state) : [];
+  return specs.map((spec) => ({ ...spec, lanes }));
+}
+
+/** Groups whose values depend on the estimators' states. */
+const kOfEstimates: readonly PlotGroup[] = ['pose', 'errors', 'estimates'];
+
+function stateLanes(state: State): StateLane[] {
+  return tracksOf(state)
+    .filter(({ name, shown }) => shown && name !== '')
+    .map((track) => ({
+      name: track.label,
+      hue: hueOf(track),
+      spans: () => spansOf(track),
+      offset_s: track.run.offset_s,
+    }));
 }
 
 /** The group in which a series is shown; null if it is part of a pose. */

@@ -9,9 +9,11 @@ import { valueAt } from '../../store/plots/curve';
 import { CurveWindow } from '../../store/plots/curve_window';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
+import { spanAt, stateName } from '../../store/state_spans';
 import type { Span } from '../../store/time_window';
 import { paintCurves } from './curve_painter';
 import { plotTip } from './plot_tip';
+import { paintStateLane } from '../state_lanes';
 import { steerTime } from './time_gestures';
 
 export interface PlotActions {
@@ -27,6 +29,12 @@ export interface PlotActions {
 const kFont = '10px system-ui, sans-serif';
 /** Beyond this many, the values of all curves are reached by scrolling. */
 export const kMostReadouts = 6;
+/** Of the lanes with the estimators' states. */
+const kLane_px = 5;
+const kMostLanes_px = 24;
+const kLanesGap_px = 2;
+/** Of a lane; the rest sets it off from the next one. */
+const kLaneFilled = 0.8;
 const kNoLine: Polyline = { t_s: [], values: [] };
 const kSyncKey = 'overfly-plots';
 
@@ -38,6 +46,15 @@ function plotWidth_px(plot: uPlot): number {
 /** uPlot draws the axes for two times without values. */
 function axesData(span_s: Span): uPlot.AlignedData {
   return [[...span_s], [null, null]];
+}
+
+function laneHeight_px(lanes: number): number {
+  return Math.min(kLane_px, kMostLanes_px / Math.max(1, lanes));
+}
+
+/** Of all lanes with the space above them. */
+function lanesHeight_px(lanes: number): number {
+  return lanes === 0 ? 0 : Math.ceil(lanes * laneHeight_px(lanes)) + kLanesGap_px;
 }
 
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
@@ -179,6 +196,29 @@ export class Plot {
     paintCurves(ctx, this.spec.curves, this.lines, bbox, scale, uPlot.pxRatio);
   }
 
+  /** Between the curves and the numbers of the time axis. */
+  private paintLanes({ ctx, bbox }: uPlot): void {
+    const ratio = uPlot.pxRatio;
+    const lanes = this.spec.lanes ?? [];
+    const height = laneHeight_px(lanes.length) * ratio;
+    const [begin_s, end_s] = this.span_s;
+    const right = bbox.left + bbox.width;
+    ctx.save();
+    lanes.forEach(({ spans, hue, offset_s }, i) => {
+      const xOf = (t_ns: number) =>
+        bbox.left + ((t_ns / 1e9 + offset_s - begin_s) / (end_s - begin_s)) * bbox.width;
+      const top = Math.round(bbox.top + bbox.height + kLanesGap_px * ratio + i * height);
+      const box = {
+        left: bbox.left,
+        right,
+        top,
+        height: Math.max(1, Math.round(height * kLaneFilled)),
+      };
+      paintStateLane(ctx, spans(), curveStyle(hue).colour, xOf, box);
+    });
+    ctx.restore();
+  }
+
   private fit(): void {
     const { clientWidth, clientHeight } = this.area;
     if (clientWidth < 20 || clientHeight < 20) return;
@@ -227,6 +267,15 @@ export class Plot {
       y: event.clientY,
       time: formatTime(t_s * 1e9),
       value: plot.posToVal(event.clientY - top, 'y'),
+      states: this.unusualStates(t_s),
+    });
+  }
+
+  /** Of the estimators that do not track at a time. */
+  private unusualStates(t_s: number): string[] {
+    return (this.spec.lanes ?? []).flatMap(({ name, spans, offset_s }) => {
+      const state = spanAt(spans(), (t_s - offset_s) * 1e9)?.state ?? 'TRACKING';
+      return state === 'TRACKING' ? [] : `${name}: ${stateName(state)}`;
     });
   }
 
@@ -247,6 +296,7 @@ export class Plot {
   }
 
   private uplotOptions(timeLabels: boolean, leads: boolean): uPlot.Options {
+    const lanes = lanesHeight_px(this.spec.lanes?.length ?? 0);
     const axis = {
       stroke: () => paint('var(--muted)'),
       font: kFont,
@@ -269,8 +319,8 @@ export class Plot {
       },
       axes: [
         timeLabels
-          ? { ...axis, size: 20, gap: 2, ticks: { show: false }, space: 44 }
-          : { ...axis, size: 0, ticks: { show: false }, values: () => [], space: 44 },
+          ? { ...axis, size: 20 + lanes, gap: 2 + lanes, ticks: { show: false }, space: 44 }
+          : { ...axis, size: lanes, ticks: { show: false }, values: () => [], space: 44 },
         { ...axis, size: 40, gap: 3, ticks: { show: false }, space: 20 },
       ],
       // uPlot draws the axes; the curves are drawn over them.
@@ -279,6 +329,7 @@ export class Plot {
         draw: [
           (plot: uPlot) => this.paintCurves(plot),
           (plot: uPlot) => this.drawLimit(plot),
+          (plot: uPlot) => this.paintLanes(plot),
           // The scales match the data only now.
           (plot: uPlot) => this.placeCursor(plot),
         ],

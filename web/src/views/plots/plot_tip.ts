@@ -16,7 +16,11 @@ export interface PointedAt {
   /** Of the plot's axes. */
   time: string;
   value: number;
+  /** Of estimators that do not track then. */
+  states: readonly string[];
 }
+
+const kMostNotes = 8;
 
 interface Row {
   root: HTMLElement;
@@ -43,13 +47,14 @@ class PlotTip {
   show(spec: PlotSpec, values: readonly (number | null)[], at: PointedAt): void {
     const { label, unit, digits, curves } = spec;
     const { rows, nearest, more } = hoverRows(values, at.value, kMostRows);
-    if (rows.length === 0) {
+    if (rows.length + at.states.length === 0) {
       this.hide();
       return;
     }
     if (!this.root.isConnected) document.body.append(this.root);
     setText(this.title, `${label} · ${at.time}`);
-    setText(this.more, more === 0 ? '' : `${more} more: point at them`);
+    const notes = more === 0 ? at.states : [`${more} more: point at them`, ...at.states];
+    setText(this.more, notes.slice(0, kMostNotes).join('\n'));
     rows.forEach(({ index, value }, i) => {
       const row = this.row(i);
       const { colour, dash } = curveStyle(curves[index]?.hue ?? { kind: 'run', order: 0 });

@@ -18,6 +18,7 @@ import { kMostReadouts, Plot } from './plot';
 import { besides, kPathAxes, PathPlot } from './path_plot';
 import type { PlotFile } from './plot_files';
 import { saveMenu, timePlotsFile } from './plot_files';
+import { PlotLegend } from './plot_legend';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -73,6 +74,7 @@ export class PlotsPanel implements View {
     },
     'Whole flight',
   );
+  private readonly legend = new PlotLegend();
   private readonly statuses = new EstimatorTable();
   private readonly tabs = h('span', { class: 'tabs' });
   private readonly alignment = h('span', {
@@ -84,6 +86,7 @@ export class PlotsPanel implements View {
   private group: Group = 'pose';
   private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
+  private shownSpecs: readonly PlotSpec[] = [];
   private readonly paths: readonly PathPlot[];
   private key = '';
   /** Of the panel: asking for it in each frame causes a layout. */
@@ -111,7 +114,7 @@ export class PlotsPanel implements View {
     else this.panel.tools.append(this.tabs);
     this.panel.tools.append(this.whole, this.files, this.alignment, this.hoverTime);
     takeTimeKeys(this.grid, context.plotTime);
-    this.panel.body.append(this.grid, this.statuses.root);
+    this.panel.body.append(this.grid, this.legend.root, this.statuses.root);
     this.root = this.panel.root;
     this.build();
     new ResizeObserver(() => {
@@ -159,6 +162,7 @@ export class PlotsPanel implements View {
     const { part_s, shown_s } = this.context.plotTime;
     this.whole.disabled = part_s === null;
     for (const plot of this.plots) plot.draw(shown_s);
+    this.legend.show(this.shownSpecs);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
@@ -230,6 +234,9 @@ export class PlotsPanel implements View {
       onWhole: () => plotTime.showWhole(),
     };
     const specs = this.specs();
+    this.shownSpecs = specs;
+    this.legend.show(specs);
+    this.panel.body.classList.toggle('has-legend', !this.legend.root.hidden);
     const columns = this.columns(specs.length);
     this.files.hidden =
       this.group === 'estimators' || (specs.length === 0 && this.group !== 'path');
@@ -331,6 +338,6 @@ export class PlotsPanel implements View {
   }
 }
 
-function specKey({ key, curves }: PlotSpec) {
-  return [key, curves.map(({ name, hue }) => [name, hue])];
+function specKey({ key, curves, lanes }: PlotSpec) {
+  return [key, curves.map(({ name, hue }) => [name, hue]), lanes?.length];
 }

@@ -84,6 +84,16 @@ describe('plotSpecs', () => {
     expect([...(curve?.values as Float64Array)]).toEqual([0.5, 1.5]);
   });
 
+  it('has the states of the shown estimates where they matter', () => {
+    const { store, session } = twoRuns();
+    session.showTrack('r1', 'feature', false);
+    for (const group of ['pose', 'errors', 'estimates'] as const) {
+      const lanes = plotSpecs(store.state, group)[0]?.lanes ?? [];
+      expect(lanes.map(({ name, offset_s }) => [name, offset_s])).toEqual([['B feature', 5]]);
+      expect(lanes[0]?.spans()).toHaveLength(1);
+    }
+  });
+
   it('reads poses at the clock as the server sends them', () => {
     const viewing = twoRuns();
     const pose = { x_m: 3, y_m: 0, z_m: 0, roll_deg: 0, pitch_deg: 0, yaw_deg: -82 };
