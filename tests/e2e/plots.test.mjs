@@ -251,6 +251,25 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     await page.mouse.move(2, 2);
   });
 
+  step('counts the frames that an estimator has missed', async () => {
+    await chooseGroup('estimates');
+    const readouts = page.locator('.plot[data-axis=missed_frames] .readout');
+    await readouts.first().waitFor();
+    const { x, y, width, height } = await plotBox('missed_frames');
+    const valuesAt = async (share, wanted) => {
+      await page.mouse.move(x + width * share, y + height / 2);
+      await dashboard.until((texts) => {
+        const all = document.querySelectorAll('.plot[data-axis=missed_frames] .readout');
+        return [...all].map(({ textContent }) => textContent).join() === texts;
+      }, wanted);
+    };
+    await valuesAt(0.3, 'A 0,A 0,A 0,B 0,B 0,B 0');
+    await valuesAt(0.9, 'A 0,A 10,A 0,B 0,B 10,B 0');
+    await dashboard.screenshot('plots_missed');
+    await page.mouse.move(2, 2);
+    await chooseGroup('pose');
+  });
+
   const save = async (panel, format) => {
     const [download] = await Promise.all([
       page.waitForEvent('download'),
