@@ -5,7 +5,7 @@ import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
 import { flyCourse } from './support/flights.mjs';
-import { serverMissing } from './support/server.mjs';
+import { getJson, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -319,6 +319,31 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     assert.equal(lines[0], 'run,track,t_s,x_m,y_m,z_m');
     const truth = lines.filter((line) => line.startsWith(`${kIds[0]},truth,`));
     assert.equal(truth.length, 621);
+    await chooseGroup('pose');
+  });
+
+  step('plots relative errors over the length of sub-paths', async () => {
+    await chooseGroup('drift');
+    const plot = page.locator('[data-axis=translation_percent]');
+    await plot.waitFor();
+    await dashboard.untilSettled();
+    const { estimators } = await getJson(stage.server, `/runs/${kIds[1]}/metrics`);
+    const { relative } = estimators.third.alignments.init_scale;
+    const wanted = relative.find(({ length_m }) => length_m === 200).translation_percent.toFixed(3);
+    const longest = Math.max(...relative.map(({ length_m }) => length_m));
+    const { x, y, width, height } = await plot.locator('.path-area').boundingBox();
+    // The axis ends 8 % beyond the greatest length; beside it are 48 and 16 px.
+    await page.mouse.move(x + 48 + ((width - 64) * 200) / (1.08 * longest), y + height / 3);
+    const tip = page.locator('[data-role=plot-tip]');
+    await tip.filter({ hasText: 'Translation error · 200 m' }).waitFor();
+    const row = tip.locator('.plot-tip-rows > div', { hasText: 'B third' });
+    assert.equal((await row.innerText()).split('\n')[1], `${wanted} %`);
+    await dashboard.screenshot('plots_drift');
+    await page.mouse.move(2, 2);
+    const lines = await saveAll('plots', 'drift', ['Translation error [%]', 'Rotation error [deg / 100 m]', 'A first']);
+    assert.equal(lines[0], 'figure,estimate,length_m,value,sub_paths');
+    const saved = lines.find((line) => line.startsWith('translation_percent,B third,200,'));
+    assert.equal(Number(saved.split(',')[3]).toFixed(3), wanted);
     await chooseGroup('pose');
   });
 

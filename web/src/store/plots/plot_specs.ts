@@ -189,7 +189,15 @@ function missedSpecs(state: State): PlotSpec[] {
   const hint =
     'Frames without an answer so far: dropped while the estimator was busy, late, or never given';
   return [
-    { key: 'missed_frames', label: 'Missed frames', hint, unit: 'frames', digits: 0, least: 4, curves },
+    {
+      key: 'missed_frames',
+      label: 'Missed frames',
+      hint,
+      unit: 'frames',
+      digits: 0,
+      least: 4,
+      curves,
+    },
   ];
 }
 
@@ -227,7 +235,7 @@ function tableOf({ run, name }: Track): Table | undefined {
   return name === '' ? run.data.truth : run.shownEstimate(name)?.table;
 }
 
-function hueOf({ name, order, colour }: Track): CurveHue {
+export function hueOf({ name, order, colour }: Track): CurveHue {
   return name === '' ? { kind: 'truth', order } : { kind: 'estimate', colour };
 }
 

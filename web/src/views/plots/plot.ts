@@ -265,7 +265,7 @@ export class Plot {
     plotTip.show(spec, this.valuesAt(t_s), {
       x: event.clientX,
       y: event.clientY,
-      time: formatTime(t_s * 1e9),
+      place: formatTime(t_s * 1e9),
       value: plot.posToVal(event.clientY - top, 'y'),
       states: this.unusualStates(t_s),
     });

@@ -4,6 +4,9 @@ import { curveStyle } from '../colours';
 import { h, rebuild } from '../dom';
 import { stateLegend } from '../state_lanes';
 
+/** A plot over time has lanes, too. */
+type Named = Pick<PlotSpec, 'lanes'> & { curves: readonly { name: string; hue: CurveHue }[] };
+
 export class PlotLegend {
   readonly root = h('div', {
     class: 'plot-legend',
@@ -14,7 +17,7 @@ export class PlotLegend {
   });
 
   /** Curves of the same name have the same colour in all plots. One curve needs no name. */
-  show(specs: readonly PlotSpec[]): void {
+  show(specs: readonly Named[]): void {
     const hues = new Map<string, CurveHue>();
     for (const { curves } of specs) for (const { name, hue } of curves) hues.set(name, hue);
     hues.delete('');

@@ -1,7 +1,7 @@
 // The list beside the mouse on a plot: every curve with its name, value and unit.
 import { formatNumber } from '../../store/format';
 import { hoverRows } from '../../store/plots/hover_values';
-import type { PlotSpec } from '../../store/plots/plot_specs';
+import type { CurveHue } from '../../store/plots/plot_specs';
 import { curveStyle } from '../colours';
 import { h, setAttribute, setText } from '../dom';
 
@@ -9,12 +9,20 @@ const kOff_px = 14;
 /** More curves do not fit beside a mouse. */
 const kMostRows = 18;
 
+/** What is pointed at. */
+export interface TipPlot {
+  label: string;
+  unit: string;
+  digits: number;
+  curves: readonly { name: string; hue: CurveHue }[];
+}
+
 export interface PointedAt {
   /** Of the window [px]. */
   x: number;
   y: number;
-  /** Of the plot's axes. */
-  time: string;
+  /** On the plot's axes: a time or a length, and a value. */
+  place: string;
   value: number;
   /** Of estimators that do not track then. */
   states: readonly string[];
@@ -44,15 +52,15 @@ class PlotTip {
   );
   private readonly rows: Row[] = [];
 
-  show(spec: PlotSpec, values: readonly (number | null)[], at: PointedAt): void {
-    const { label, unit, digits, curves } = spec;
+  show(plot: TipPlot, values: readonly (number | null)[], at: PointedAt): void {
+    const { label, unit, digits, curves } = plot;
     const { rows, nearest, more } = hoverRows(values, at.value, kMostRows);
     if (rows.length + at.states.length === 0) {
       this.hide();
       return;
     }
     if (!this.root.isConnected) document.body.append(this.root);
-    setText(this.title, `${label} · ${at.time}`);
+    setText(this.title, `${label} · ${at.place}`);
     const notes = more === 0 ? at.states : [`${more} more: point at them`, ...at.states];
     setText(this.more, notes.slice(0, kMostNotes).join('\n'));
     rows.forEach(({ index, value }, i) => {

@@ -2,6 +2,8 @@
 // instead the status of the estimators.
 import { needsAttention } from '../../store/estimator_status';
 import { formatTime } from '../../store/format';
+import type { DriftSpec } from '../../store/plots/drift_specs';
+import { driftCsv, driftSpecs } from '../../store/plots/drift_specs';
 import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
 import { shownAlignment } from '../../store/state';
@@ -12,6 +14,7 @@ import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
+import { DriftPlot } from './drift_plot';
 import type { PlotActions } from './plot';
 import { takeTimeKeys } from './time_commands';
 import { kMostReadouts, Plot } from './plot';
@@ -34,6 +37,7 @@ const kGroups = [
   { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
   { name: 'path', label: 'Path', hint: 'The tracks from above and from the side' },
   { name: 'errors', label: 'Errors', hint: 'Estimates minus truth: position, rotation' },
+  { name: 'drift', label: 'Drift', hint: 'Relative errors over the length of sub-paths' },
   { name: 'estimates', label: 'Estimates', hint: 'Latency and counters of the estimators' },
   { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
   { name: 'sensors', label: 'Sensors', hint: 'IMU, GPS, air data, magnetometer, rangefinder' },
@@ -48,10 +52,14 @@ type PanelGroup = 'errors' | 'image';
 /** Groups that are offered only if a run has their series. */
 const kOptional: readonly PlotGroup[] = ['vehicle'];
 
+/** Groups whose plots have no axis of time. */
+const kUntimed: readonly Group[] = ['path', 'drift'];
+
 const kGridLabel =
   'Plots over time: move with left and right, zoom with plus and minus, 0 shows the whole flight';
 
-const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'>, string>> = {
+const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'> | 'drift', string>> = {
+  drift: 'No figures yet: they come with the score at the end of the flight, if it is long enough.',
   pose: 'No track is shown.',
   errors: 'No errors yet: they begin with the first pose of an estimator.',
   estimates: 'No values yet: they begin with the first answer of an estimator.',
@@ -88,6 +96,7 @@ export class PlotsPanel implements View {
   private plots: Plot[] = [];
   private shownSpecs: readonly PlotSpec[] = [];
   private readonly paths: readonly PathPlot[];
+  private drifts: DriftPlot[] = [];
   private key = '';
   /** Of the panel: asking for it in each frame causes a layout. */
   private width_px = 0;
@@ -129,7 +138,10 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
-    if (changed.has('theme')) for (const plot of [...this.plots, ...this.paths]) plot.repaint();
+    if (changed.has('metrics') && this.group === 'drift') this.drawSoon();
+    if (changed.has('theme')) {
+      for (const plot of [...this.plots, ...this.paths, ...this.drifts]) plot.repaint();
+    }
     if (changed.has('playback')) this.context.plotTime.follow();
     // While it is moved, every frame counts.
     if (changed.has('plotTime')) this.draw();
@@ -164,15 +176,28 @@ export class PlotsPanel implements View {
     for (const plot of this.plots) plot.draw(shown_s);
     this.legend.show(this.shownSpecs);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
+    if (this.group === 'drift') this.drawDrifts(driftSpecs(state));
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
+  }
+
+  /** The two plots stay as long as there are figures. */
+  private drawDrifts(specs: readonly DriftSpec[]): void {
+    if (this.drifts.length !== specs.length) {
+      this.drifts = specs.map((spec) => new DriftPlot(spec));
+      this.grid.replaceChildren(...this.drifts.map(({ root }) => root));
+    }
+    specs.forEach((spec, i) => this.drifts[i]?.draw(spec));
+    this.legend.show(specs);
+    this.panel.body.classList.toggle('has-legend', !this.legend.root.hidden);
   }
 
   private emptyText(): string | null {
     const { runId, sensors, sensorError } = this.context.store.state;
     if (runId === null) return 'Poses of the flight appear here.';
     const { group } = this;
-    if (this.plots.length > 0 || group === 'estimators' || group === 'path') return null;
+    if (this.plots.length + this.drifts.length > 0 || group === 'estimators' || group === 'path')
+      return null;
     if (group !== 'sensors') return kNothingYet[group];
     if (sensorError !== null) return sensorError;
     return sensors === null
@@ -202,6 +227,14 @@ export class PlotsPanel implements View {
         svg: () => besides(this.paths.map((path) => path.drawing())),
       };
     }
+    if (group === 'drift') {
+      const drifts = driftSpecs(this.context.store.state);
+      return {
+        name: group,
+        csv: () => driftCsv(drifts),
+        svg: () => besides(this.drifts.map((drift) => drift.drawing())),
+      };
+    }
     const specs = this.specs();
     if (specs.length === 0) return null;
     const { shown_s: span_s } = this.context.plotTime;
@@ -215,8 +248,9 @@ export class PlotsPanel implements View {
   }
 
   private specs(): PlotSpec[] {
-    if (this.group === 'estimators' || this.group === 'path') return [];
-    return plotSpecs(this.context.store.state, this.group);
+    const { group } = this;
+    if (group === 'estimators' || group === 'path' || group === 'drift') return [];
+    return plotSpecs(this.context.store.state, group);
   }
 
   private build(): void {
@@ -239,7 +273,7 @@ export class PlotsPanel implements View {
     this.panel.body.classList.toggle('has-legend', !this.legend.root.hidden);
     const columns = this.columns(specs.length);
     this.files.hidden =
-      this.group === 'estimators' || (specs.length === 0 && this.group !== 'path');
+      this.group === 'estimators' || (specs.length === 0 && !kUntimed.includes(this.group));
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
@@ -249,7 +283,7 @@ export class PlotsPanel implements View {
     const many = specs.some(({ curves }) => curves.length > kMostReadouts);
     const least_px = many ? kLeastHeightOfMany_px : kLeastHeight_px;
     this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${least_px}px, 1fr))`;
-    if (this.group === 'path') this.grid.removeAttribute('style');
+    if (kUntimed.includes(this.group)) this.grid.removeAttribute('style');
     const overTime = specs.length > 0;
     this.whole.hidden = !overTime;
     setAttribute(this.grid, 'tabindex', overTime ? '0' : null);
@@ -258,6 +292,7 @@ export class PlotsPanel implements View {
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
+    this.drifts = [];
     const drawn = this.group === 'path' ? this.paths : this.plots;
     this.grid.replaceChildren(...drawn.map(({ root }) => root));
     setText(this.alignment, this.alignmentText());
@@ -268,7 +303,7 @@ export class PlotsPanel implements View {
     const aligned = this.context.store.state.watched.filter(
       ({ run }) => (run?.estimators.length ?? 0) > 0,
     );
-    const byAlignment: readonly Group[] = ['pose', 'path', 'errors'];
+    const byAlignment: readonly Group[] = ['pose', 'path', 'errors', 'drift'];
     if (!byAlignment.includes(this.group) || aligned.length === 0) return '';
     return `estimates by ${[...new Set(aligned.map(shownAlignment))].join(', ')}`;
   }
