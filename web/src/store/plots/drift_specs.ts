@@ -22,6 +22,8 @@ export interface DriftSpec {
   unit: string;
   hint: string;
   digits: number;
+  /** The axis reaches at least to it, so that noise does not fill the plot. */
+  least: number;
   curves: DriftCurve[];
 }
 
@@ -32,6 +34,7 @@ const kFigures = [
     unit: '%',
     hint: 'Root mean square over all sub-paths of a length, each aligned at its beginning, in % of the length',
     digits: 3,
+    least: 0.1,
   },
   {
     key: 'rotation_deg_per_100m',
@@ -39,6 +42,7 @@ const kFigures = [
     unit: 'deg / 100 m',
     hint: 'Root mean square over all sub-paths of a length, each aligned at its beginning, by 100 m of it',
     digits: 4,
+    least: 0.01,
   },
 ] as const;
 

@@ -82,10 +82,10 @@ export class DriftPlot {
 
   /** The greatest length and value of the axes, which begin at zero. */
   private ends(): { length_m: number; value: number } {
-    const { curves } = this.spec;
+    const { curves, least } = this.spec;
     return {
       length_m: kMargin * Math.max(1, ...curves.flatMap(({ lengths_m }) => lengths_m)),
-      value: kMargin * Math.max(1e-6, ...curves.flatMap(({ values }) => values)),
+      value: kMargin * Math.max(least, ...curves.flatMap(({ values }) => values)),
     };
   }
 
