@@ -289,7 +289,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     const save = async (format) => {
       const [download] = await Promise.all([
         page.waitForEvent('download'),
-        page.locator('.plot-files').first().selectOption(format),
+        page.locator('.dv-groupview:has([data-panel=plots]) .plot-files').selectOption(format),
       ]);
       return readFileSync(await download.path());
     };

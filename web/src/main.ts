@@ -37,6 +37,7 @@ import { CalibrationDesk } from './store/calibration/calibration_desk';
 import { Cameras } from './store/pictures/cameras';
 import { openVideo, videoWorks } from './store/pictures/video_decoding';
 import { PixelProbe } from './store/pictures/pixel_probe';
+import { PlotTime } from './store/plots/plot_time';
 import { Catalogue } from './store/catalogue';
 import { LayoutExchange } from './store/layouts/layout_exchange';
 import { Layouts } from './store/layouts/layouts';
@@ -145,6 +146,7 @@ const context = {
   alignment,
   cameras,
   probe,
+  plotTime: new PlotTime(store),
   sensors,
   logs,
   smoothing,

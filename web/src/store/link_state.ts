@@ -69,12 +69,11 @@ export function openLink(link: ReadPermalink, linked: Linked): void {
   state.colours = chosen;
   const { window_s, plotGroup, debugOf, imageErrorOf, zooms } = choices;
   state.plotGroup = plotGroup;
-  state.plotWindow =
-    window_s === null ? null : { span_s: window_s, chosen_ns: t_ns, reached: false };
+  state.plotWindow = window_s === null ? null : { span_s: window_s, waits_ns: t_ns };
   state.debugOf = debugOf;
   state.imageErrorOf = imageErrorOf;
   state.zooms = new Map(zooms);
-  store.change('run', 'rows', 'plots', 'pictures', 'zoom', 'cameras');
+  store.change('run', 'rows', 'plots', 'plotTime', 'pictures', 'zoom', 'cameras');
   if (choices.alignment !== state.alignment) void alignment.choose(choices.alignment);
   if (choices.compared !== state.compared) void alignment.compare(choices.compared);
 }

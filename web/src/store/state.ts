@@ -199,6 +199,7 @@ const kTopicNames = [
   'metrics',
   'estimators',
   'playback',
+  'plotTime',
   'pictures',
   'zoom',
   'hover',

@@ -1,30 +1,16 @@
 // The part of the flight that the plots show: all of it, or the part zoomed to.
 
 const kNarrowest_s = 0.5;
+/** A longer step of the clock, of a second of playback, is a jump of the viewer. */
+const kJump_s = 1;
 
 export type Span = readonly [number, number];
 
-/** The part zoomed to. It contains the clock's time once that has moved on from `chosen_ns`. */
+/** The part zoomed to. */
 export interface PlotWindow {
   span_s: Span;
-  /** The clock's time when it was zoomed to; that of an address, until the clock gets there. */
-  chosen_ns: number | null;
-  /** Whether the clock has been there. */
-  reached: boolean;
-}
-
-/** The window at the clock's time; the same object if nothing changes. */
-export function windowAt(
-  window: PlotWindow,
-  whole: Span,
-  clock: { t_ns: number; playing: boolean },
-): PlotWindow {
-  const there = clock.t_ns === window.chosen_ns;
-  if (there) return window.reached ? window : { ...window, reached: true };
-  if (!window.reached && window.chosen_ns !== null && !clock.playing) return window;
-  const span_s = following(window.span_s, whole, clock.t_ns / 1e9);
-  const moved = span_s !== window.span_s || window.chosen_ns !== null;
-  return moved ? { span_s, chosen_ns: null, reached: true } : window;
+  /** The clock's time that an address names: until the clock gets there, the window stays. */
+  waits_ns: number | null;
 }
 
 /** Zooms about a fixed time; null = the whole flight. */
@@ -36,12 +22,31 @@ export function zoomed(span: Span, whole: Span, centre_s: number, factor: number
   return shiftedInto([low, high], whole);
 }
 
+/** The window moved to later times, or to earlier ones, as far as the flight goes. */
+export function panned([low, high]: Span, whole: Span, by_s: number): Span {
+  return shiftedInto([low + by_s, high + by_s], whole);
+}
+
 /** The window moved so that it contains the cursor. */
 export function following(span: Span, whole: Span, cursor_s: number): Span {
-  if (cursor_s >= span[0] && cursor_s <= span[1]) return span;
+  if (contains(span, cursor_s)) return span;
   const width = span[1] - span[0];
   const low = cursor_s > span[1] ? cursor_s - 0.1 * width : cursor_s - 0.9 * width;
   return shiftedInto([low, low + width], whole);
+}
+
+/**
+ * Whether the window follows the cursor: not if it was moved away from it, until the clock jumps.
+ * @param speed  of playback
+ */
+export function follows(span: Span, before_s: number, cursor_s: number, speed: number): boolean {
+  if (before_s === cursor_s) return false;
+  if (contains(span, before_s)) return true;
+  return Math.abs(cursor_s - before_s) > kJump_s * Math.max(1, Math.abs(speed));
+}
+
+function contains([low, high]: Span, t_s: number): boolean {
+  return t_s >= low && t_s <= high;
 }
 
 function shiftedInto([low, high]: Span, whole: Span): Span {

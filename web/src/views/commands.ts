@@ -5,6 +5,7 @@ import { kPanelNames, kPanels } from '../store/layouts/panel_names';
 import { kReadyLayouts } from '../store/layouts/ready_layouts';
 import { kSceneParts } from '../store/scene/scene_look';
 import { kThemes, kThemeTitles } from '../store/themes';
+import { kTimeCommands } from './plots/time_commands';
 import { kShortcuts } from './shortcuts';
 import { saveReport } from './runs/report_button';
 import type { Context } from './view';
@@ -16,6 +17,7 @@ export function commandsOf(context: Context): Command[] {
     ...layoutCommands(context),
     ...panelCommands(context),
     ...sceneCommands(context),
+    ...plotCommands(context),
     ...themeCommands(context),
     ...shortcutCommands(context),
     ...pageCommands(context),
@@ -73,6 +75,16 @@ function sceneCommands({ scene, store }: Context): Command[] {
     title: `${store.state.scene.show.has(part) ? 'Hide' : 'Show'} ${label.toLowerCase()}`,
     words: hint,
     run: () => scene.togglePart(part),
+  }));
+}
+
+function plotCommands({ plotTime }: Context): Command[] {
+  return kTimeCommands.map(({ title, run }) => ({
+    id: title,
+    group: 'Plots',
+    title,
+    words: 'over time pan move zoom',
+    run: () => run(plotTime),
   }));
 }
 

@@ -26,6 +26,11 @@ export class HelpOverlay implements View {
       ['Double-click in a picture', 'show it whole'],
       ['Click or drag in a plot', 'seek'],
       ['Wheel in a plot', 'zoom in time'],
+      [
+        'Shift and wheel or drag in a plot',
+        'move in time; also middle or right button, two fingers',
+      ],
+      ['+ − 0 ← → on plots (Tab)', 'zoom, whole flight, move in time'],
       ['Double-click in a plot', 'show the whole flight'],
     ].map(([what = '', does = '']) => h('tr', {}, h('td', {}, what), h('td', {}, does)));
     this.root = h(

@@ -15,3 +15,28 @@ export function svg(
   element.append(...content);
   return element;
 }
+
+/** What style sheets say about drawings. */
+const kStyles = [
+  'fill',
+  'fill-opacity',
+  'stroke',
+  'stroke-width',
+  'font-family',
+  'font-size',
+  'font-weight',
+  'text-anchor',
+  'dominant-baseline',
+] as const;
+
+/** A drawing of the page as the content of a file: its styles are written into its elements. */
+export function drawingContent(drawing: SVGElement): string {
+  const copy = drawing.cloneNode(true) as SVGElement;
+  const [from, to] = [drawing, copy].map((root) => [...root.querySelectorAll('*')]);
+  from?.forEach((element, i) => {
+    const styles = getComputedStyle(element);
+    for (const name of kStyles) to?.[i]?.setAttribute(name, styles.getPropertyValue(name));
+  });
+  const text = new XMLSerializer();
+  return [...copy.childNodes].map((child) => text.serializeToString(child)).join('');
+}

@@ -1,19 +1,27 @@
 // The bar of the timeline: the recorded span, the estimators' states, the cursor.
 import { formatTime } from '../store/format';
-import type { EstimateRows } from '../store/run_data';
 import type { Topic } from '../store/state';
 import { clockSpan_ns } from '../store/state';
 import { faultMeaning, FaultSpans, kindsOf } from '../store/fault_spans';
 import { FlightBands } from '../store/flight_bands';
 import { bandHue } from '../store/logs/log_bands';
 import type { FaultSpan } from '../store/fault_spans';
+import { spansOf, stateName, trackStatesAt } from '../store/state_spans';
 import { tracksOf } from '../store/tracks';
-import { faultColour, kStateColours } from './colours';
+import { hueOf } from '../store/plots/plot_specs';
+import { curveStyle, faultColour } from './colours';
 import { h, promptlyPerFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
 import { paint } from './paint';
+import { paintStateLane, stateLegend } from './state_lanes';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;
+/** Of all strips: the bar's. */
+const kStrips_px = 14;
+/** Of a strip; the rest sets it off from the next one. */
+const kFilled = 0.75;
+/** More do not fit into the tooltip. */
+const kMostStates = 8;
 /** Minimum width, so that a fault of one frame stays visible. */
 const kLeastFault_px = 2;
 const kMostFaults = 4;
@@ -25,6 +33,8 @@ export class TimelineTrack {
   private readonly flight = h('div', { class: 'flight-lane', 'data-role': 'flight-lane' });
   private readonly strips = h('canvas', { class: 'strips' });
   private readonly head = h('div', { class: 'head' });
+  /** What the plots show if they do not show everything. */
+  private readonly plotted = h('div', { class: 'plotted', 'data-role': 'plotted', hidden: true });
   private readonly tip = h('div', { class: 'tip', hidden: true });
   private readonly faults = h('canvas', { class: 'fault-lane' });
   private readonly legend = h('div', { class: 'fault-legend', 'data-role': 'fault-legend' });
@@ -44,6 +54,7 @@ export class TimelineTrack {
       this.flight,
       this.strips,
       this.range,
+      this.plotted,
       this.head,
     );
     this.root = h(
@@ -70,6 +81,9 @@ export class TimelineTrack {
       this.drawFlight();
     }
     if (changed.has('playback') || changed.has('run')) this.moveHead();
+    if (['plotTime', 'playback', 'run'].some((topic) => changed.has(topic as Topic))) {
+      this.markPlotted();
+    }
   }
 
   /** Share of the bar at a time of the clock. */
@@ -99,42 +113,32 @@ export class TimelineTrack {
     this.root.setAttribute('aria-valuetext', formatTime(t_ns));
   }
 
+  private markPlotted(): void {
+    const { part_s } = this.context.plotTime;
+    this.plotted.hidden = part_s === null;
+    if (part_s !== null) {
+      place(this.plotted, this.share(part_s[0] * 1e9), this.share(part_s[1] * 1e9));
+    }
+  }
+
   private drawStrips(): void {
     const tracks = tracksOf(this.context.store.state).filter(({ name }) => name !== '');
     const width = Math.max(1, Math.round(this.bar.clientWidth * window.devicePixelRatio));
-    const height = Math.max(1, tracks.length * kStripHeight_px);
-    this.strips.style.height = `${height}px`;
+    const lane_px = Math.min(kStripHeight_px, kStrips_px / Math.max(1, tracks.length));
+    const height_px = Math.max(1, tracks.length * lane_px);
+    const lane = lane_px * window.devicePixelRatio;
+    this.strips.style.height = `${height_px}px`;
     this.strips.width = width;
-    this.strips.height = height;
+    this.strips.height = Math.ceil(height_px * window.devicePixelRatio);
     const pen = this.strips.getContext('2d');
     if (pen === null) return;
-    tracks.forEach(({ run, name }, i) => {
-      const rows = run.data.estimates.get(name);
-      if (rows !== undefined) this.drawStrip(pen, rows, run.offset_ns, i * kStripHeight_px, width);
-    });
-  }
-
-  /** Consecutive rows of the same state become one rectangle. */
-  private drawStrip(
-    pen: CanvasRenderingContext2D,
-    rows: EstimateRows,
-    offset_ns: number,
-    top: number,
-    width: number,
-  ): void {
     const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
-    const xOf = (t_ns: number) => ((t_ns + offset_ns - begin_ns) / (end_ns - begin_ns)) * width;
-    const times = rows.table.column('t_ns');
-    let begin = 0;
-    for (let i = 1; i <= times.length; i += 1) {
-      const state = rows.states[begin] ?? '';
-      if (i < times.length && rows.states[i] === state) continue;
-      const x0 = xOf(times[begin] ?? 0);
-      const x1 = xOf(times[Math.min(i, times.length - 1)] ?? 0);
-      pen.fillStyle = paint(kStateColours[state] ?? 'var(--idle)');
-      pen.fillRect(x0, top, Math.max(1, x1 - x0), kStripHeight_px - 1);
-      begin = i;
-    }
+    tracks.forEach((track, i) => {
+      const { offset_ns } = track.run;
+      const xOf = (t_ns: number) => ((t_ns + offset_ns - begin_ns) / (end_ns - begin_ns)) * width;
+      const box = { left: 0, right: width, top: i * lane, height: lane * kFilled };
+      paintStateLane(pen, spansOf(track), curveStyle(hueOf(track)).colour, xOf, box);
+    });
   }
 
   /** Modes fill the bar, mission items are a line along its top, events are ticks above it. */
@@ -187,6 +191,19 @@ export class TimelineTrack {
     return texts.length === 0 ? '' : ` · ${texts.join(' · ')}`;
   }
 
+  /** The tooltip's lines about the estimators at a time of the clock: name, state, from when to when. */
+  private stateText(t_ns: number): string {
+    const states = trackStatesAt(this.context.store.state, t_ns);
+    const unusual = states.filter(({ state }) => state !== 'TRACKING');
+    const shown = states.length <= kMostStates ? states : unusual.slice(0, kMostStates);
+    const lines = shown.map(
+      ({ track, state, begin_ns, end_ns }) =>
+        `\n${track.label}: ${stateName(state)} ${formatTime(begin_ns)} – ${formatTime(end_ns)}`,
+    );
+    const left = states.length - shown.length;
+    return lines.join('') + (left === 0 ? '' : `\n${left} more`);
+  }
+
   /** One lane for all faults; if several are active, the later kinds are drawn below. */
   private drawFaults(): void {
     const { runId, data } = this.context.store.state;
@@ -205,7 +222,12 @@ export class TimelineTrack {
     const pen = this.faults.getContext('2d');
     if (pen !== null) this.paintSpans(pen, spans, kinds);
     setAttribute(this.root, 'data-faults', kinds.length === 0 ? null : kinds.join(' '));
-    rebuild(this.legend, kinds.join(' '), () => kinds.map(legendEntry));
+    const tracks = tracksOf(this.context.store.state).filter(({ name }) => name !== '');
+    const states = new Set(tracks.flatMap((track) => spansOf(track).map(({ state }) => state)));
+    rebuild(this.legend, [...states, '/', ...kinds].join(' '), () => [
+      ...(states.size === 0 ? [] : stateLegend(states)),
+      ...kinds.map(legendEntry),
+    ]);
   }
 
   private paintSpans(
@@ -267,7 +289,10 @@ export class TimelineTrack {
       this.tip.style.left = `${event.clientX - this.root.getBoundingClientRect().left}px`;
       const t_ns = this.timeAt(event);
       const run_ns = t_ns - this.context.store.state.offset_ns;
-      setText(this.tip, formatTime(t_ns) + this.flightText(run_ns) + this.faultText(run_ns));
+      setText(
+        this.tip,
+        formatTime(t_ns) + this.flightText(run_ns) + this.faultText(run_ns) + this.stateText(t_ns),
+      );
     });
     this.root.addEventListener('pointerleave', () => {
       this.tip.hidden = true;

@@ -3,6 +3,7 @@ import type { Alignment } from '../store/alignment';
 import type { CalibrationDesk } from '../store/calibration/calibration_desk';
 import type { Cameras } from '../store/pictures/cameras';
 import type { PixelProbe } from '../store/pictures/pixel_probe';
+import type { PlotTime } from '../store/plots/plot_time';
 import type { Store, Topic } from '../store/state';
 import type { Player } from '../store/player';
 import type { SceneControl } from '../store/scene/scene_control';
@@ -46,6 +47,7 @@ export interface Context {
   alignment: Alignment;
   cameras: Cameras;
   probe: PixelProbe;
+  plotTime: PlotTime;
   sensors: Sensors;
   logs: LogBrowser;
   smoothing: LogSmoothing;

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { following, windowAt, zoomed } from '../../src/store/time_window';
+import { following, follows, panned, zoomed } from '../../src/store/time_window';
 
 const whole = [0, 100] as const;
 
@@ -18,36 +18,32 @@ describe('zoomed', () => {
   });
 });
 
-describe('windowAt', () => {
-  const at = (t_s: number, playing = false) => ({ t_ns: t_s * 1e9, playing });
-
-  it('shows what was zoomed to until the clock moves on', () => {
-    const chosen = { span_s: [10, 20] as const, chosen_ns: 50e9, reached: true };
-    expect(windowAt(chosen, whole, at(50))).toBe(chosen);
-    expect(windowAt(chosen, whole, at(51)).span_s).toEqual([50, 60]);
-  });
-
-  it('does not follow the clock on its way to the time of an address', () => {
-    const linked = { span_s: [10, 20] as const, chosen_ns: 50e9, reached: false };
-    expect(windowAt(linked, whole, at(0))).toBe(linked);
-    const there = windowAt(linked, whole, at(50));
-    expect(there.span_s).toEqual([10, 20]);
-    expect(windowAt(there, whole, at(0)).span_s).toEqual([0, 10]);
-    expect(windowAt(linked, whole, at(30, true)).span_s, 'it plays').toEqual([29, 39]);
-  });
-
-  it('follows from then on, and stays the same object while nothing changes', () => {
-    const free = { span_s: [10, 20] as const, chosen_ns: null, reached: true };
-    expect(windowAt(free, whole, at(15))).toBe(free);
-    expect(windowAt(free, whole, at(21)).span_s).toEqual([20, 30]);
-  });
-});
-
 describe('following', () => {
   it('moves on only when the cursor leaves', () => {
     expect(following([10, 20], whole, 15)).toEqual([10, 20]);
     expect(following([10, 20], whole, 21)).toEqual([20, 30]);
     expect(following([10, 20], whole, 5)).toEqual([0, 10]);
     expect(following([10, 20], whole, 100)).toEqual([90, 100]);
+  });
+});
+
+describe('panned', () => {
+  it('keeps its width and stays inside the flight', () => {
+    expect(panned([10, 20], whole, 5)).toEqual([15, 25]);
+    expect(panned([10, 20], whole, -50)).toEqual([0, 10]);
+    expect(panned([10, 20], whole, 500)).toEqual([90, 100]);
+  });
+});
+
+describe('follows', () => {
+  it('goes with a clock that was in the window', () => {
+    expect(follows([10, 20], 19.9, 20.1, 1)).toBe(true);
+    expect(follows([10, 20], 15, 15, 1)).toBe(false);
+  });
+
+  it('goes to a clock elsewhere only when it jumps, which depends on the speed', () => {
+    expect(follows([10, 20], 50, 50.1, 1)).toBe(false);
+    expect(follows([10, 20], 50, 52, 1)).toBe(true);
+    expect(follows([10, 20], 50, 52, -50)).toBe(false);
   });
 });

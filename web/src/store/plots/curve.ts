@@ -27,79 +27,90 @@ export interface Polyline {
 /**
  * The curve in a span of time and up to the next point on each side. Of more than two points per
  * interval, the first, the smallest, the largest and the last remain, which draw the same pixels
- * (Jugel et al., M4: A Visualization-Oriented Time Series Data Aggregation, VLDB 2014).
+ * (Jugel et al., M4: A Visualization-Oriented Time Series Data Aggregation, VLDB 2014). The intervals
+ * begin at fixed times, so that a curve that is moved keeps its shape.
  * @param intervals  of the span: its pixels
  */
 export function decimated(curve: Curve, span_s: Span, intervals: number): Polyline {
-  const { t, t_scale_s, t_offset_s, values, scale } = curve;
+  const { t, t_scale_s, t_offset_s, values, scale, longest_gap_s, wraps } = curve;
   const toRow = (t_s: number) => lastAtOrBefore(t, (t_s - t_offset_s) / t_scale_s);
   const first = Math.max(0, toRow(span_s[0]));
   const last = Math.min(t.length - 1, toRow(span_s[1]) + 1);
-  const line = new Thinned(curve, last - first > 2 * intervals);
+  // Without thinning every point has an interval of its own.
+  const thin = last - first > 2 * intervals;
   const perInterval = intervals / Math.max(1e-9, span_s[1] - span_s[0]);
+  const line: Polyline = { t_s: [], values: [] };
+  const group = new Interval(line);
+  let before_s = NaN;
+  let before = NaN;
   for (let row = first; row <= last; row += 1) {
     const t_s = (t[row] ?? NaN) * t_scale_s + t_offset_s;
-    line.add(t_s, (values[row] ?? NaN) * scale, Math.floor((t_s - span_s[0]) * perInterval));
+    const value = (values[row] ?? NaN) * scale;
+    const broken =
+      value !== value ||
+      t_s - before_s > longest_gap_s ||
+      (wraps && Math.abs(value - before) > 180);
+    if (broken) group.break((t_s + before_s) / 2);
+    before_s = t_s;
+    before = value;
+    if (value === value) group.add(t_s, value, thin ? Math.floor(t_s * perInterval) : row);
   }
-  return line.end();
+  group.end();
+  return line;
 }
 
-class Thinned {
-  private readonly line: Polyline = { t_s: [], values: [] };
-  private before_s = NaN;
-  private before = NaN;
-  private interval = NaN;
-  /** Of the interval, in the order of time: first, the two extremes, last. */
-  private points: { t_s: number; value: number }[] = [];
+/** The points of one interval of which at most four are drawn. Called for every value of long series. */
+class Interval {
+  private index = NaN;
+  private count = 0;
+  private first_s = 0;
+  private first = 0;
+  private least_s = 0;
+  private least = 0;
+  private most_s = 0;
+  private most = 0;
+  private last_s = 0;
+  private last = 0;
 
-  constructor(
-    private readonly curve: Curve,
-    private readonly thin: boolean,
-  ) {}
+  constructor(private readonly line: Polyline) {}
 
-  add(t_s: number, value: number, interval: number): void {
-    const { longest_gap_s, wraps } = this.curve;
-    const gap = t_s - this.before_s > longest_gap_s;
-    const wrapped = wraps && Math.abs(value - this.before) > 180;
-    if (Number.isNaN(value) || gap || wrapped) this.break((t_s + this.before_s) / 2);
-    this.before_s = t_s;
-    this.before = value;
-    if (Number.isNaN(value)) return;
-    if (!this.thin) {
-      this.push(t_s, value);
-      return;
+  add(t_s: number, value: number, index: number): void {
+    if (index !== this.index) this.end();
+    if (this.count === 0) {
+      this.index = index;
+      this.first_s = this.least_s = this.most_s = t_s;
+      this.first = this.least = this.most = value;
+    } else if (value < this.least) {
+      this.least = value;
+      this.least_s = t_s;
+    } else if (value > this.most) {
+      this.most = value;
+      this.most_s = t_s;
     }
-    if (interval !== this.interval) this.flush();
-    this.interval = interval;
-    this.keep({ t_s, value });
+    this.last = value;
+    this.last_s = t_s;
+    this.count += 1;
   }
 
-  end(): Polyline {
-    this.flush();
-    return this.line;
-  }
-
-  private keep(point: { t_s: number; value: number }): void {
-    const { points } = this;
-    points.push(point);
-    if (points.length <= 4) return;
-    // Of the three between the first and the last, the smallest and the largest stay.
-    const middle = points.slice(1, 4).sort((a, b) => a.value - b.value)[1];
-    points.splice(
-      points.findIndex((one) => one === middle),
-      1,
-    );
-  }
-
-  private flush(): void {
-    for (const { t_s, value } of this.points) this.push(t_s, value);
-    this.points = [];
-  }
-
-  private break(t_s: number): void {
-    this.flush();
+  break(t_s: number): void {
+    this.end();
     const { values } = this.line;
     if (values.length > 0 && !Number.isNaN(values.at(-1))) this.push(t_s, NaN);
+  }
+
+  /** Draws the points kept, in the order of time. */
+  end(): void {
+    if (this.count === 0) return;
+    this.push(this.first_s, this.first);
+    const rising = this.least_s < this.most_s;
+    this.pushInside(rising ? this.least_s : this.most_s, rising ? this.least : this.most);
+    this.pushInside(rising ? this.most_s : this.least_s, rising ? this.most : this.least);
+    if (this.count > 1) this.push(this.last_s, this.last);
+    this.count = 0;
+  }
+
+  private pushInside(t_s: number, value: number): void {
+    if (t_s > this.first_s && t_s < this.last_s) this.push(t_s, value);
   }
 
   private push(t_s: number, value: number): void {

@@ -4,6 +4,7 @@ import type { CurveHue } from './plot_specs';
 
 /** A track as it is drawn. */
 export interface Path {
+  name: string;
   hue: CurveHue;
   x: ArrayLike<number>;
   y: ArrayLike<number>;

@@ -5,6 +5,7 @@ import { ticks, tickText } from './path_frame';
 import type { CurveHue, PlotBase, PlotSpec } from './plot_specs';
 import { kTimeBase } from './plot_specs';
 import { paddedRange } from './plot_range';
+import { escaped, svgFile } from './svg_pen';
 import type { Span } from '../time_window';
 
 /**
@@ -45,7 +46,7 @@ const kWidth_px = 480;
 const kHeight_px = 260;
 const kLeft_px = 56;
 const kRight_px = 14;
-const kTop_px = 40;
+export const kTop_px = 40;
 const kBottom_px = 34;
 const kTickSpace_px = 60;
 const kFont = 'font-family="system-ui, sans-serif" font-size="11"';
@@ -64,11 +65,7 @@ export function plotsSvg(
     const [x, y] = [(i % across) * kWidth_px, Math.floor(i / across) * kHeight_px];
     return `<g transform="translate(${x} ${y})">${onePlot(spec, span_s, style)}</g>`;
   });
-  return (
-    `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" ` +
-    `viewBox="0 0 ${width} ${height}">` +
-    `<rect width="${width}" height="${height}" fill="${style.background}"/>${plots.join('')}</svg>\n`
-  );
+  return svgFile(width, height, style.background, plots.join(''));
 }
 
 function onePlot(spec: PlotSpec, span_s: Span, style: SvgStyle): string {
@@ -117,13 +114,23 @@ interface Area {
 }
 
 function titles({ label, unit, curves }: PlotSpec, style: SvgStyle): string {
-  const title = unit === '' ? label : `${label} [${unit}]`;
-  const names = curves
+  const names = curves.map(({ name, hue }) => ({ name, colour: style.curve(hue).colour }));
+  return svgTitles(kLeft_px, unit === '' ? label : `${label} [${unit}]`, names, style.text);
+}
+
+/** A title, and below it the names of the curves in their colours. Both take `kTop_px`. */
+export function svgTitles(
+  x: number,
+  title: string,
+  names: readonly { name: string; colour: string }[],
+  colour: string,
+): string {
+  const spans = names
     .filter(({ name }) => name !== '')
-    .map(({ name, hue }) => `<tspan fill="${style.curve(hue).colour}">${escaped(name)}  </tspan>`);
+    .map((one) => `<tspan fill="${one.colour}">${escaped(one.name)}  </tspan>`);
   return (
-    `<text x="${kLeft_px}" y="16" ${kFont} font-weight="600" fill="${style.text}">${escaped(title)}</text>` +
-    `<text x="${kLeft_px}" y="31" ${kFont} xml:space="preserve">${names.join('')}</text>`
+    `<text x="${x}" y="16" ${kFont} font-weight="600" fill="${colour}">${escaped(title)}</text>` +
+    `<text x="${x}" y="31" ${kFont} xml:space="preserve">${spans.join('')}</text>`
   );
 }
 
@@ -150,8 +157,4 @@ function axes(span_s: Span, area: Area, style: SvgStyle, base: PlotBase): string
     ),
     text(kLeft_px + plotWidth, bottom + 28, 'end', base.label),
   ].join('');
-}
-
-function escaped(text: string): string {
-  return text.replace(/[&<>"]/g, (found) => `&#${found.charCodeAt(0)};`);
 }

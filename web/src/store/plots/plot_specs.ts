@@ -1,16 +1,20 @@
 // What the plots over time show: groups of plots, made from the series that the server offers.
 import type { SensorCurve } from '../../protocol/sensor_types';
 import type { SeriesInfo } from '../../protocol/messages';
+import { isActive } from '../../protocol/rest_types';
 import { kTextureLimit } from '../error_table';
 import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { State } from '../state';
+import type { StateSpan } from '../state_spans';
+import { spansOf } from '../state_spans';
 import type { Table } from '../table';
 import type { TrackColour } from '../track_colours';
 import type { Track } from '../tracks';
 import { drawnTracks, shownTracks, tableOf } from '../tracks';
 import type { WatchedRun } from '../watched_run';
 import type { Curve } from './curve';
+import { knownMissedFrames } from './missed_frames';
 import { kSensorFigures, longestPause_s } from './sensor_figures';
 
 export type PlotGroup = 'pose' | 'errors' | 'image' | 'estimates' | 'sensors' | 'vehicle';
@@ -57,6 +61,18 @@ export interface PlotSpec {
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   curves: CurveSpec[];
+  /** Below the curves. */
+  lanes?: readonly StateLane[];
+}
+
+/** The states of an estimate over time. */
+export interface StateLane {
+  name: string;
+  hue: CurveHue;
+  /** As they are now, in times of the run. */
+  spans: () => readonly StateSpan[];
+  /** Seconds of the clock at the beginning of the run. */
+  offset_s: number;
 }
 
 export const kAxisLabels: Readonly<Record<Axis, string>> = {
@@ -89,8 +105,25 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
 };
 
 export function plotSpecs(state: State, group: PlotGroup): PlotSpec[] {
-  if (group === 'pose') return poseSpecs(state);
-  return group === 'sensors' ? sensorSpecs(state) : seriesSpecs(state, group);
+  if (group === 'sensors') return sensorSpecs(state);
+  const specs = group === 'pose' ? poseSpecs(state) : seriesSpecs(state, group);
+  if (group === 'estimates') specs.push(...missedSpecs(state));
+  const lanes = kOfEstimates.includes(group) ? stateLanes(state) : [];
+  return specs.map((spec) => ({ ...spec, lanes }));
+}
+
+/** Groups whose values depend on the estimators' states. */
+const kOfEstimates: readonly PlotGroup[] = ['pose', 'errors', 'estimates'];
+
+function stateLanes(state: State): StateLane[] {
+  return shownTracks(state)
+    .filter(({ name }) => name !== '')
+    .map((track) => ({
+      name: track.label,
+      hue: hueOf(track),
+      spans: () => spansOf(track),
+      offset_s: track.run.offset_s,
+    }));
 }
 
 /** The group in which a series is shown; null if it is part of a pose. */
@@ -153,6 +186,54 @@ function specOf({ column, label, unit }: SeriesInfo): PlotSpec {
   return { ...spec, ...kKnown[column] };
 }
 
+/** Frames without an answer, as far as they can be told. */
+function missedSpecs(state: State): PlotSpec[] {
+  const answering = shownTracks(state).filter(
+    (track) => track.name !== '' && answersOf(track) !== undefined,
+  );
+  if (answering.length === 0) return [];
+  const curves = answering.map((track) => ({
+    name: track.label,
+    short: track.letter,
+    hue: hueOf(track),
+    curve: () => missedCurve(track),
+  }));
+  const hint =
+    'Frames without an answer so far: dropped while the estimator was busy, late, or never given';
+  return [
+    {
+      key: 'missed_frames',
+      label: 'Missed frames',
+      hint,
+      unit: 'frames',
+      digits: 0,
+      least: 4,
+      curves,
+    },
+  ];
+}
+
+function answersOf({ run, name }: Track): Table | undefined {
+  const table = run.data.estimates.get(name)?.table;
+  return table === undefined || table.length === 0 ? undefined : table;
+}
+
+function missedCurve(track: Track): Curve | null {
+  const { run } = track;
+  const answers = answersOf(track);
+  if (answers === undefined || run.data.truth.length === 0) return null;
+  const over = run.run !== null && !isActive(run.run);
+  const { t_ns, count } = knownMissedFrames(run.data.truth, answers, over, run.data.generation);
+  return {
+    ...curveTime(run),
+    t: t_ns,
+    values: count,
+    scale: 1,
+    longest_gap_s: Infinity,
+    wraps: false,
+  };
+}
+
 /** The estimator whose series it is; '' = a series of the flight. */
 function trackOf({ stream }: SeriesInfo): string {
   return stream.startsWith('estimate/') ? stream.slice('estimate/'.length) : '';
@@ -178,14 +259,18 @@ function curveOf(
 ): Curve | null {
   if (table === undefined || table.length === 0) return null;
   return {
+    ...curveTime(run),
     t: table.column('t_ns'),
-    t_scale_s: 1e-9,
-    t_offset_s: run.offset_s,
     values: table.column(column),
     scale,
     longest_gap_s: Infinity,
     wraps,
   };
+}
+
+/** Of stamps of a run. */
+function curveTime({ offset_s }: WatchedRun) {
+  return { t_scale_s: 1e-9, t_offset_s: offset_s };
 }
 
 /** Plots of the sensors that the main run has. */

@@ -7,6 +7,7 @@ import type { Curve } from '../plots/curve';
 import type { Path, PathMark } from '../plots/path_frame';
 import type { CurveHue, CurveSpec, PlotBase, PlotSpec } from '../plots/plot_specs';
 import { kAxisLabels } from '../plots/plot_specs';
+import { csvLine } from '../csv';
 import { lastAtOrBefore } from '../table';
 import { shortName } from './score_desk';
 import type { Span } from '../time_window';
@@ -101,19 +102,35 @@ function driftSpecs({ estimates }: Evaluation, mode: string): PlotSpec[] {
 /** The tracks by an alignment; times are those of the page's clock. */
 export function scorePaths(evaluation: Evaluation, mode: string, across: Axis, up: Axis): Path[] {
   const { truth, estimates } = evaluation;
-  const path = (hue: CurveHue, table: SeriesTable | undefined): Path[] => {
+  const path = (name: string, hue: CurveHue, table: SeriesTable | undefined): Path[] => {
     const x = curveOf(table, across, truth.first_s);
     const y = curveOf(table, up, truth.first_s);
     if (x === null || y === null) return [];
     const { t, t_scale_s, t_offset_s } = x;
-    return [{ hue, x: x.values, y: y.values, t, t_scale_s, t_offset_s }];
+    return [{ name, hue, x: x.values, y: y.values, t, t_scale_s, t_offset_s }];
   };
   return [
-    ...path({ kind: 'truth', order: 0 }, truth.series?.positions),
-    ...estimates.flatMap(({ series }, colour) =>
-      path({ kind: 'estimate', colour }, series?.[mode]?.positions),
+    ...path('truth', { kind: 'truth', order: 0 }, truth.series?.positions),
+    ...estimates.flatMap(({ name, series }, colour) =>
+      path(shortName(name), { kind: 'estimate', colour }, series?.[mode]?.positions),
     ),
   ];
+}
+
+/** All positions of the tracks, one line each; times count from the truth's beginning. */
+export function scorePathsCsv({ truth, estimates }: Evaluation, mode: string): string {
+  const lines = [csvLine(['track', 't_s', 'x_m', 'y_m', 'z_m'])];
+  const add = (name: string, table: SeriesTable | undefined) => {
+    const [t_s, ...axes] = ['t_s', 'x_m', 'y_m', 'z_m'].map((column) => table?.[column] ?? []);
+    t_s?.forEach((time_s, row) => {
+      const place = axes.map((values) => values[row] ?? null);
+      if (time_s === null || place.includes(null)) return;
+      lines.push(csvLine([name, time_s - truth.first_s, ...(place as number[])]));
+    });
+  };
+  add('truth', truth.series?.positions);
+  for (const { name, series } of estimates) add(shortName(name), series?.[mode]?.positions);
+  return lines.join('');
 }
 
 /** Where the tracks are at a time: of each the last position not later. */

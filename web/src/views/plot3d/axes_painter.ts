@@ -3,6 +3,7 @@
 import type { AxisScale, AxisScales, Point3 } from '../../store/plot3d/axis_box';
 import type { OrbitView, ScreenMap } from '../../store/plot3d/orbit_view';
 import { toScreen } from '../../store/plot3d/orbit_view';
+import type { Pen } from '../../store/plots/svg_pen';
 import { tickText } from '../../store/plots/path_frame';
 import { paint } from '../paint';
 
@@ -27,12 +28,7 @@ interface Sides {
   farY: number;
 }
 
-export function paintAxes(
-  pen: CanvasRenderingContext2D,
-  scales: AxisScales,
-  view: OrbitView,
-  map: ScreenMap,
-): void {
+export function paintAxes(pen: Pen, scales: AxisScales, view: OrbitView, map: ScreenMap): void {
   const sides = sidesOf(scales, view);
   pen.lineWidth = 1;
   pen.font = kFont;
@@ -68,12 +64,7 @@ function screenX(map: ScreenMap, [x, y]: readonly [number, number], z: number): 
   return toScreen(map, [x, y, z])[0];
 }
 
-function paintGrid(
-  pen: CanvasRenderingContext2D,
-  [x, y, z]: AxisScales,
-  { farX, farY }: Sides,
-  map: ScreenMap,
-): void {
+function paintGrid(pen: Pen, [x, y, z]: AxisScales, { farX, farY }: Sides, map: ScreenMap): void {
   pen.strokeStyle = paint('var(--grid)');
   pen.beginPath();
   const line = (from: Point3, to: Point3) => {
@@ -138,7 +129,7 @@ function paintEdge(
 class Numbers {
   private readonly places: { left: number; right: number; y: number }[] = [];
 
-  constructor(readonly pen: CanvasRenderingContext2D) {}
+  constructor(readonly pen: Pen) {}
 
   paint(text: string, [x, y]: Pixel): void {
     const { pen, places } = this;
@@ -166,7 +157,7 @@ function shifted([x, y]: Pixel, [ux, uy]: Pixel, by_px: number): Pixel {
 }
 
 /** Text that begins at a pixel and extends in a direction. */
-function align(pen: CanvasRenderingContext2D, [ux, uy]: Pixel): void {
+function align(pen: Pen, [ux, uy]: Pixel): void {
   pen.textAlign = ux > kSlant ? 'left' : ux < -kSlant ? 'right' : 'center';
   pen.textBaseline = uy > kSlant ? 'top' : uy < -kSlant ? 'bottom' : 'middle';
 }

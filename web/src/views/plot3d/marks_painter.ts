@@ -3,6 +3,7 @@ import type { BodyAxes } from '../../store/plot3d/attitude';
 import type { Point3 } from '../../store/plot3d/axis_box';
 import type { OrbitView, ScreenMap } from '../../store/plot3d/orbit_view';
 import { screenAxes, toScreen } from '../../store/plot3d/orbit_view';
+import type { Pen } from '../../store/plots/svg_pen';
 import { paint } from '../paint';
 
 /** An aircraft at the clock's time. */
@@ -51,7 +52,7 @@ const kFin: readonly Pixel[] = [
 ];
 
 export function paintMarks(
-  pen: CanvasRenderingContext2D,
+  pen: Pen,
   marks: readonly Mark[],
   view: OrbitView,
   map: ScreenMap,
@@ -69,13 +70,7 @@ export function paintMarks(
   for (const mark of marks) paintAircraft(pen, mark, view, map);
 }
 
-function paintLine(
-  pen: CanvasRenderingContext2D,
-  map: ScreenMap,
-  from: Point3,
-  to: Point3,
-  colour: string,
-): void {
+function paintLine(pen: Pen, map: ScreenMap, from: Point3, to: Point3, colour: string): void {
   pen.strokeStyle = paint(colour);
   pen.beginPath();
   pen.moveTo(...toScreen(map, from));
@@ -84,28 +79,32 @@ function paintLine(
 }
 
 function paintAircraft(
-  pen: CanvasRenderingContext2D,
+  pen: Pen,
   { place, axes, colour, truth, letter }: Mark,
   view: OrbitView,
   map: ScreenMap,
 ): void {
   const at = toScreen(map, place);
   const { plan, fin, fromAbove } = aircraftShape(axes, view, truth ? kTruth_px : kEstimate_px);
-  const shapes = (fromAbove ? [plan, fin] : [fin, plan]).map((shape) => {
-    const path = new Path2D();
-    for (const [x, y] of shape) path.lineTo(at[0] + x, at[1] + y);
-    path.closePath();
-    return path;
-  });
+  const shapes = fromAbove ? [plan, fin] : [fin, plan];
+  const trace = (shape: Pixel[]) => {
+    pen.beginPath();
+    for (const [x, y] of shape) pen.lineTo(at[0] + x, at[1] + y);
+    pen.closePath();
+  };
   pen.lineJoin = 'round';
   pen.strokeStyle = paint('var(--panel)');
   pen.lineWidth = kMargin_px;
-  for (const shape of shapes) pen.stroke(shape);
+  for (const shape of shapes) {
+    trace(shape);
+    pen.stroke();
+  }
   pen.fillStyle = pen.strokeStyle = paint(colour);
   pen.lineWidth = kEdge_px;
   for (const shape of shapes) {
-    pen.fill(shape);
-    pen.stroke(shape);
+    trace(shape);
+    pen.fill();
+    pen.stroke();
   }
   if (letter === '') return;
   pen.font = '600 11px system-ui, sans-serif';

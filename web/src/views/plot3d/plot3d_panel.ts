@@ -5,6 +5,7 @@ import { bodyAxes } from '../../store/plot3d/attitude';
 import { boxOfAll } from '../../store/plot3d/axis_box';
 import type { Size } from '../../store/plots/path_frame';
 import { hueOf } from '../../store/plots/plot_specs';
+import { tracksCsv } from '../../store/plots/track_files';
 import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
@@ -14,11 +15,14 @@ import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
+import type { PlotFile } from '../plots/plot_files';
+import { saveMenu } from '../plots/plot_files';
 import type { Context, View } from '../view';
 import { paintAxes } from './axes_painter';
 import { LineStage } from './line_stage';
 import type { Mark } from './marks_painter';
 import { paintMarks } from './marks_painter';
+import { plot3dSvg } from './plot3d_file';
 import type { Pixel } from './plot3d_steering';
 import { steerPlot } from './plot3d_steering';
 import { plot3dTools } from './plot3d_tools';
@@ -63,6 +67,10 @@ export class Plot3dPanel implements View {
     this.area.append(this.grid, this.lines, this.marks, this.legend, ...this.note.parts);
     this.panel.body.prepend(this.area);
     this.panel.tools.append(
+      saveMenu(
+        () => this.file(),
+        (text) => context.notices.error(text),
+      ),
       ...plot3dTools({
         fit: (direction) => this.view.fit(direction),
         exaggerate: (heightScale) => this.view.exaggerate(heightScale),
@@ -166,6 +174,23 @@ export class Plot3dPanel implements View {
     this.draws += 1;
     setAttribute(this.root, 'data-draws', String(this.draws));
     setAttribute(this.root, 'data-points', String(tracks.pointCount));
+  }
+
+  private file(): PlotFile | null {
+    const { tracks, view, context } = this;
+    const { state } = context.store;
+    if (tracks === null || tracks.all.length === 0) return null;
+    const { current, map, scales } = view;
+    const marked = { floor_m: scales[2].low, errorLines: this.errorLines };
+    return {
+      name: '3d',
+      csv: () => tracksCsv(state),
+      svg: () =>
+        plot3dSvg(tracks.all, map, this.size(), state.clock?.t_ns ?? Infinity, {
+          below: (pen) => paintAxes(pen, scales, current, map),
+          above: (pen) => paintMarks(pen, marksOf(state), current, map, marked),
+        }),
+    };
   }
 
   private steer(): void {

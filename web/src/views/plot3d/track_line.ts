@@ -19,9 +19,9 @@ import type { CurveStyle } from '../colours';
 import type { Rgb } from './rgb';
 
 /** The part after the clock's time: how much of the width and of the colour. */
-const kLaterWidth = 0.5;
+export const kLaterWidth = 0.5;
 const kLaterColour = 0.42;
-const kBroader_px = 0.75;
+export const kBroader_px = 0.75;
 /** An estimate is drawn over a truth that it agrees with; of the depth of the plot. */
 const kDepthStep = 1e-3;
 

@@ -11,6 +11,9 @@ import {
   toPixels,
   zoomedAt,
 } from '../../store/plots/path_frame';
+import { kTop_px, svgTitles } from '../../store/plots/plot_export';
+import type { Pen } from '../../store/plots/svg_pen';
+import { clipped, SvgPen, svgFile } from '../../store/plots/svg_pen';
 import type { State } from '../../store/state';
 import { hueOf } from '../../store/plots/plot_specs';
 import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
@@ -38,6 +41,13 @@ export const kPathAxes: readonly PathAxes[] = [
   { key: 'xy', label: 'From above', hint: 'x east, y north', across: 'x_m', up: 'y_m' },
   { key: 'xz', label: 'From the south', hint: 'x east, z up', across: 'x_m', up: 'z_m' },
 ];
+
+/** A part of a file [px]. */
+export interface Drawing {
+  width: number;
+  height: number;
+  content: string;
+}
 
 export class PathPlot {
   readonly root: HTMLElement;
@@ -76,12 +86,12 @@ export class PathPlot {
   /** Takes the tracks as they are now. */
   draw(state: State): void {
     const paths = drawnTracks(state).flatMap((track): Path[] => {
-      const { run } = track;
+      const { run, label: name } = track;
       const table = tableOf(track);
       if (table === undefined) return [];
       const { across, up } = this.axes;
       const [x, y, t] = [table.column(across), table.column(up), table.column('t_ns')];
-      return [{ hue: hueOf(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
+      return [{ name, hue: hueOf(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
     });
     this.show(paths, this.marksOf(state));
   }
@@ -133,6 +143,29 @@ export class PathPlot {
     const pen = this.canvas.getContext('2d');
     if (pen === null) return;
     pen.scale(ratio, ratio);
+    this.paintAll(pen, size);
+  }
+
+  /** As it is shown, drawn into a file: its title, names and tracks. */
+  drawing(): Drawing {
+    const { width_px, height_px } = this.size();
+    const pen = new SvgPen();
+    this.paintAll(pen, { width_px, height_px });
+    const { label, hint } = this.axes;
+    const names = this.paths.map(({ name, hue }) => ({
+      name,
+      colour: paint(curveStyle(hue).colour),
+    }));
+    return {
+      width: width_px,
+      height: height_px + kTop_px,
+      content:
+        svgTitles(8, `${label}: ${hint} [m]`, names, paint('var(--text)')) +
+        clipped(0, kTop_px, width_px, height_px, pen.content),
+    };
+  }
+
+  private paintAll(pen: Pen, size: Size): void {
     const frame = this.frame();
     this.paintGrid(pen, frame, size);
     for (const path of this.paths) paintPath(pen, path, frame, size);
@@ -145,7 +178,7 @@ export class PathPlot {
     }
   }
 
-  private paintGrid(pen: CanvasRenderingContext2D, frame: PathFrame, size: Size): void {
+  private paintGrid(pen: Pen, frame: PathFrame, size: Size): void {
     const [left, bottom] = toMetres(frame, size, [0, size.height_px]);
     const [right, top] = toMetres(frame, size, [size.width_px, 0]);
     pen.strokeStyle = paint('var(--grid)');
@@ -251,12 +284,18 @@ export class PathPlot {
   }
 }
 
-function paintPath(
-  pen: CanvasRenderingContext2D,
-  { hue, x, y }: Path,
-  frame: PathFrame,
-  size: Size,
-): void {
+/** A file with drawings from left to right. */
+export function besides(drawings: readonly Drawing[]): string {
+  let left = 0;
+  const parts = drawings.map(({ width, content }) => {
+    left += width;
+    return `<g transform="translate(${left - width} 0)">${content}</g>`;
+  });
+  const height = Math.max(...drawings.map((one) => one.height));
+  return svgFile(left, height, paint('var(--panel)'), parts.join(''));
+}
+
+function paintPath(pen: Pen, { hue, x, y }: Path, frame: PathFrame, size: Size): void {
   const { colour, width_px, dash } = curveStyle(hue);
   pen.strokeStyle = paint(colour);
   pen.lineWidth = width_px;

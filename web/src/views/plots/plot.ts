@@ -1,26 +1,41 @@
-// One plot of curves over time with a playback cursor. A click or drag seeks.
+// One plot of curves over time with a playback cursor.
 import uPlot from 'uplot';
 import { curveStyle } from '../colours';
-import { h, promptlyPerFrame, setText } from '../dom';
+import { h, perFrame, setText } from '../dom';
 import { paint } from '../paint';
-import { formatNumber } from '../../store/format';
+import { formatNumber, formatTime } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
-import { decimated, valueAt } from '../../store/plots/curve';
+import { valueAt } from '../../store/plots/curve';
+import { CurveWindow } from '../../store/plots/curve_window';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
+import { spanAt, stateName } from '../../store/state_spans';
 import type { Span } from '../../store/time_window';
+import { paintCurves } from './curve_painter';
+import { plotTip } from './plot_tip';
+import { paintStateLane } from '../state_lanes';
+import { steerTime } from './time_gestures';
 
 export interface PlotActions {
   onSeek: (t_s: number) => void;
   onHover: (t_s: number | null) => void;
-  /** A factor above 1 zooms in; 0 shows all. */
+  /** A factor below 1 shows less. */
   onZoom: (centre_s: number, factor: number) => void;
+  /** To later times, or to earlier ones. */
+  onPan: (by_s: number) => void;
+  onWhole: () => void;
 }
 
 const kFont = '10px system-ui, sans-serif';
-const kZoom_per_px = 0.0015;
-/** Beyond this many, the values of all curves do not fit next to the title. */
-const kMostReadouts = 6;
+/** Beyond this many, the values of all curves are reached by scrolling. */
+export const kMostReadouts = 6;
+/** Of the lanes with the estimators' states. */
+const kLane_px = 5;
+const kMostLanes_px = 24;
+const kLanesGap_px = 2;
+/** Of a lane; the rest sets it off from the next one. */
+const kLaneFilled = 0.8;
+const kNoLine: Polyline = { t_s: [], values: [] };
 const kSyncKey = 'overfly-plots';
 
 /** Width of the plotting area, from uPlot's own numbers: asking the element causes a layout. */
@@ -32,9 +47,23 @@ function unitText({ unit, over }: PlotSpec): string {
   return over === undefined ? unit : `${unit} over ${over.label}`;
 }
 
+/** uPlot draws the axes for two times without values. */
+function axesData(span_s: Span): uPlot.AlignedData {
+  return [[...span_s], [null, null]];
+}
+
+function laneHeight_px(lanes: number): number {
+  return Math.min(kLane_px, kMostLanes_px / Math.max(1, lanes));
+}
+
+/** Of all lanes with the space above them. */
+function lanesHeight_px(lanes: number): number {
+  return lanes === 0 ? 0 : Math.ceil(lanes * laneHeight_px(lanes)) + kLanesGap_px;
+}
+
 /** Up to three values start at the edge; more use separate rows, so that none is cut off. */
 function crowding(curves: PlotSpec['curves']): string {
-  if (curves.length > kMostReadouts) return '';
+  if (curves.length > kMostReadouts) return ' own-rows many';
   const named = curves.some(({ short }) => short !== '');
   if (curves.length > 3 || (named && curves.length === 2)) return ' own-rows';
   return curves.length === 3 ? ' crowded' : '';
@@ -47,6 +76,7 @@ export class Plot {
   private readonly cursor = h('div', { class: 'plot-cursor' });
   private readonly readouts: HTMLElement[];
   private lines: Polyline[] = [];
+  private readonly windows: readonly CurveWindow[];
   private span_s: Span = [0, 1];
   private range: [number, number] = [0, 1];
   private cursor_s: number | null = null;
@@ -61,8 +91,8 @@ export class Plot {
     { timeLabels, leads }: { timeLabels: boolean; leads: boolean },
   ) {
     const { curves } = spec;
-    const shown = curves.length > kMostReadouts ? [] : curves;
-    this.readouts = shown.map(({ hue, name }) =>
+    this.windows = curves.map(() => new CurveWindow());
+    this.readouts = curves.map(({ hue, name }) =>
       h('span', { class: 'readout', style: `color:${curveStyle(hue).colour}`, title: name }),
     );
     const title = h(
@@ -73,10 +103,9 @@ export class Plot {
       h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);
-    const data = [[0, 1], ...curves.map(() => [null, null])] as uPlot.AlignedData;
-    this.plot = new uPlot(this.uplotOptions(timeLabels, leads), data, this.area);
+    this.plot = new uPlot(this.uplotOptions(timeLabels, leads), axesData([0, 1]), this.area);
     this.plot.over.append(this.cursor);
-    this.seekable(this.plot.over);
+    this.steer(this.plot.over);
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
@@ -85,14 +114,12 @@ export class Plot {
     const { curves, least } = this.spec;
     const pixels = Math.max(100, plotWidth_px(this.plot));
     this.span_s = span_s;
-    this.lines = curves.map(({ curve }) => {
+    this.lines = curves.map(({ curve }, i) => {
       const now = curve();
-      return now === null ? { t_s: [], values: [] } : decimated(now, span_s, pixels);
+      return now === null ? kNoLine : (this.windows[i]?.at(now, span_s, pixels) ?? kNoLine);
     });
     this.range = paddedRange(...this.extremes(), least);
-    const ends = [...span_s];
-    // uPlot draws the axes for these two times; the curves are drawn by `path`.
-    this.plot.setData([ends, ...curves.map(() => [null, null])] as uPlot.AlignedData, true);
+    this.plot.setData(axesData(span_s), true);
   }
 
   /** Draws the same again, in the colours of the theme. */
@@ -118,16 +145,19 @@ export class Plot {
 
   /** Values at the time under the mouse. */
   showHover(t_s: number): void {
-    this.showValues(
-      this.spec.curves.map(({ curve }) => {
-        const now = curve();
-        return now === null ? null : valueAt(now, t_s);
-      }),
-    );
+    this.showValues(this.valuesAt(t_s));
   }
 
   destroy(): void {
+    plotTip.hide();
     this.plot.destroy();
+  }
+
+  private valuesAt(t_s: number): (number | null)[] {
+    return this.spec.curves.map(({ curve }) => {
+      const now = curve();
+      return now === null ? null : valueAt(now, t_s);
+    });
   }
 
   private showValues(values: (number | null)[]): void {
@@ -143,35 +173,54 @@ export class Plot {
   private extremes(): [number, number] {
     let low = Infinity;
     let high = -Infinity;
+    const [begin_s, end_s] = this.span_s;
     for (const { t_s, values } of this.lines) {
-      values.forEach((value, i) => {
+      for (let i = 0; i < t_s.length; i += 1) {
         const t = t_s[i] ?? NaN;
-        if (t < this.span_s[0] || t > this.span_s[1]) return;
+        const value = values[i] ?? NaN;
+        if (t < begin_s || t > end_s) continue;
         if (value < low) low = value;
         if (value > high) high = value;
-      });
+      }
     }
     return [low, high];
   }
 
-  private path(plot: uPlot, line: Polyline | undefined): uPlot.Series.Paths {
-    const stroke = new Path2D();
-    let drawing = false;
-    line?.t_s.forEach((t_s, i) => {
-      const value = line.values[i] ?? NaN;
-      if (Number.isNaN(value)) {
-        drawing = false;
-        return;
-      }
-      const x = plot.valToPos(t_s, 'x', true);
-      const y = plot.valToPos(value, 'y', true);
-      if (drawing) stroke.lineTo(x, y);
-      else stroke.moveTo(x, y);
-      // A single point is drawn as well.
-      if (!drawing) stroke.lineTo(x + 0.01, y);
-      drawing = true;
+  private paintCurves({ ctx, bbox }: uPlot): void {
+    const [begin_s, end_s] = this.span_s;
+    const [least, greatest] = this.range;
+    const scale = {
+      left: bbox.left,
+      top: bbox.top,
+      begin_s,
+      greatest,
+      px_per_s: bbox.width / (end_s - begin_s),
+      px_per_unit: bbox.height / (greatest - least),
+    };
+    paintCurves(ctx, this.spec.curves, this.lines, bbox, scale, uPlot.pxRatio);
+  }
+
+  /** Between the curves and the numbers of the time axis. */
+  private paintLanes({ ctx, bbox }: uPlot): void {
+    const ratio = uPlot.pxRatio;
+    const lanes = this.spec.lanes ?? [];
+    const height = laneHeight_px(lanes.length) * ratio;
+    const [begin_s, end_s] = this.span_s;
+    const right = bbox.left + bbox.width;
+    ctx.save();
+    lanes.forEach(({ spans, hue, offset_s }, i) => {
+      const xOf = (t_ns: number) =>
+        bbox.left + ((t_ns / 1e9 + offset_s - begin_s) / (end_s - begin_s)) * bbox.width;
+      const top = Math.round(bbox.top + bbox.height + kLanesGap_px * ratio + i * height);
+      const box = {
+        left: bbox.left,
+        right,
+        top,
+        height: Math.max(1, Math.round(height * kLaneFilled)),
+      };
+      paintStateLane(ctx, spans(), curveStyle(hue).colour, xOf, box);
     });
-    return { stroke };
+    ctx.restore();
   }
 
   private fit(): void {
@@ -187,28 +236,51 @@ export class Plot {
     if (visible) this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
-  private seekable(over: HTMLElement): void {
-    const seek = promptlyPerFrame((x: number) => this.actions.onSeek(this.plot.posToVal(x, 'x')));
-    const seekTo = (event: PointerEvent) => seek(event.clientX - over.getBoundingClientRect().left);
-    over.addEventListener('pointerdown', (event) => {
-      if (event.button !== 0) return;
-      over.setPointerCapture(event.pointerId);
-      seekTo(event);
-    });
-    over.addEventListener('pointermove', (event) => {
-      if (over.hasPointerCapture(event.pointerId)) seekTo(event);
-    });
-    over.addEventListener(
-      'wheel',
-      (event) => {
-        event.preventDefault();
-        const x = event.clientX - over.getBoundingClientRect().left;
-        this.actions.onZoom(this.plot.posToVal(x, 'x'), Math.exp(event.deltaY * kZoom_per_px));
+  private steer(over: HTMLElement): void {
+    const { onSeek, onZoom, onPan, onWhole, onHover } = this.actions;
+    const timeAt = (x_px: number) => this.plot.posToVal(x_px, 'x');
+    steerTime(over, {
+      seek: (x_px) => onSeek(timeAt(x_px)),
+      zoom: (x_px, factor) => onZoom(timeAt(x_px), factor),
+      pan: (dx_px) => {
+        const [low, high] = this.span_s;
+        onPan((-dx_px * (high - low)) / plotWidth_px(this.plot));
       },
-      { passive: false },
-    );
-    over.addEventListener('dblclick', () => this.actions.onZoom(0, 0));
-    over.addEventListener('pointerleave', () => this.actions.onHover(null));
+      showWhole: onWhole,
+    });
+    const point = perFrame((event: PointerEvent | null) => this.pointAt(event));
+    over.addEventListener('pointermove', (event) => point(event));
+    over.addEventListener('pointerleave', () => {
+      onHover(null);
+      point(null);
+    });
+  }
+
+  /** A plot with one curve has its value beside its title. */
+  private pointAt(event: PointerEvent | null): void {
+    const { spec, plot } = this;
+    const steers = (event?.buttons ?? 0) !== 0;
+    if (event === null || steers || spec.curves.length < 2 || !this.root.isConnected) {
+      plotTip.hide();
+      return;
+    }
+    const { left, top } = plot.over.getBoundingClientRect();
+    const t_s = plot.posToVal(event.clientX - left, 'x');
+    plotTip.show(spec, this.valuesAt(t_s), {
+      x: event.clientX,
+      y: event.clientY,
+      place: formatTime(t_s * 1e9),
+      value: plot.posToVal(event.clientY - top, 'y'),
+      states: this.unusualStates(t_s),
+    });
+  }
+
+  /** Of the estimators that do not track at a time. */
+  private unusualStates(t_s: number): string[] {
+    return (this.spec.lanes ?? []).flatMap(({ name, spans, offset_s }) => {
+      const state = spanAt(spans(), (t_s - offset_s) * 1e9)?.state ?? 'TRACKING';
+      return state === 'TRACKING' ? [] : `${name}: ${stateName(state)}`;
+    });
   }
 
   private drawLimit(plot: uPlot): void {
@@ -228,6 +300,7 @@ export class Plot {
   }
 
   private uplotOptions(timeLabels: boolean, leads: boolean): uPlot.Options {
+    const lanes = lanesHeight_px(this.spec.lanes?.length ?? 0);
     const axis = {
       stroke: () => paint('var(--muted)'),
       font: kFont,
@@ -250,27 +323,20 @@ export class Plot {
       },
       axes: [
         timeLabels
-          ? { ...axis, size: 20, gap: 2, ticks: { show: false }, space: 44 }
-          : { ...axis, size: 0, ticks: { show: false }, values: () => [], space: 44 },
+          ? { ...axis, size: 20 + lanes, gap: 2 + lanes, ticks: { show: false }, space: 44 }
+          : { ...axis, size: lanes, ticks: { show: false }, values: () => [], space: 44 },
         { ...axis, size: 40, gap: 3, ticks: { show: false }, space: 20 },
       ],
-      series: [
-        {},
-        ...this.spec.curves.map(({ hue, name }, i) => {
-          const { colour, width_px, dash } = curveStyle(hue);
-          return {
-            label: name,
-            stroke: () => paint(colour),
-            width: width_px,
-            dash,
-            paths: (plot: uPlot) => this.path(plot, this.lines[i]),
-            points: { show: false },
-          };
-        }),
-      ],
+      // uPlot draws the axes; the curves are drawn over them.
+      series: [{}, { paths: () => null, points: { show: false } }],
       hooks: {
-        // The scales match the data only now.
-        draw: [(plot: uPlot) => this.placeCursor(plot), (plot: uPlot) => this.drawLimit(plot)],
+        draw: [
+          (plot: uPlot) => this.paintCurves(plot),
+          (plot: uPlot) => this.drawLimit(plot),
+          (plot: uPlot) => this.paintLanes(plot),
+          // The scales match the data only now.
+          (plot: uPlot) => this.placeCursor(plot),
+        ],
         setCursor: [
           (plot: uPlot) => {
             const { left } = plot.cursor;

@@ -1,4 +1,4 @@
-// The menu that saves the plots shown: CSV, SVG or PNG.
+// The menu that saves what a panel shows: CSV, SVG or PNG.
 import { plotsCsv, plotsSvg } from '../../store/plots/plot_export';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { Span } from '../../store/time_window';
@@ -14,6 +14,14 @@ const kFormats = [
 ] as const;
 type Format = (typeof kFormats)[number]['format'];
 
+/** What is saved. PNG is the picture of the SVG file. */
+export interface PlotFile {
+  /** Of the file, without its ending. */
+  name: string;
+  csv: () => string;
+  svg: () => string;
+}
+
 export interface ShownPlots {
   group: string;
   specs: readonly PlotSpec[];
@@ -21,9 +29,9 @@ export interface ShownPlots {
   columns: number;
 }
 
-/** @param shown  null = nothing can be saved */
-export function plotFilesMenu(
-  shown: () => ShownPlots | null,
+/** @param content  null = nothing can be saved */
+export function saveMenu(
+  content: () => PlotFile | null,
   failed: (text: string) => void,
 ): HTMLSelectElement {
   const menu = h(
@@ -37,32 +45,40 @@ export function plotFilesMenu(
   menu.addEventListener('change', () => {
     const format = menu.value as Format;
     menu.value = '';
-    const plots = shown();
-    if (plots === null) return;
-    save(plots, format).catch((error: unknown) =>
+    const file = content();
+    if (file === null) return;
+    save(file, format).catch((error: unknown) =>
       failed(`The plots cannot be saved: ${String(error)}`),
     );
   });
   return menu;
 }
 
-async function save({ group, specs, span_s, columns }: ShownPlots, format: Format): Promise<void> {
-  const name = `overfly-${group}.${format}`;
+export function timePlotsFile({ group, specs, span_s, columns }: ShownPlots): PlotFile {
+  return {
+    name: group,
+    csv: () => plotsCsv(specs),
+    svg: () =>
+      plotsSvg(specs, span_s, columns, {
+        background: paint('var(--panel)'),
+        text: paint('var(--text)'),
+        grid: paint('var(--grid)'),
+        curve: (hue) => {
+          const style = curveStyle(hue);
+          return { ...style, colour: paint(style.colour) };
+        },
+      }),
+  };
+}
+
+async function save({ name, csv, svg }: PlotFile, format: Format): Promise<void> {
+  const file = `overfly-${name}.${format}`;
   if (format === 'csv') {
-    download(name, new Blob([plotsCsv(specs)], { type: 'text/csv' }));
+    download(file, new Blob([csv()], { type: 'text/csv' }));
     return;
   }
-  const svg = plotsSvg(specs, span_s, columns, {
-    background: paint('var(--panel)'),
-    text: paint('var(--text)'),
-    grid: paint('var(--grid)'),
-    curve: (hue) => {
-      const style = curveStyle(hue);
-      return { ...style, colour: paint(style.colour) };
-    },
-  });
-  const blob = new Blob([svg], { type: 'image/svg+xml' });
-  download(name, format === 'svg' ? blob : await pngOf(blob));
+  const blob = new Blob([svg()], { type: 'image/svg+xml' });
+  download(file, format === 'svg' ? blob : await pngOf(blob));
 }
 
 /** At twice the size, so that it is sharp on paper. */

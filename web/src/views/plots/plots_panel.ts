@@ -2,11 +2,12 @@
 // instead the status of the estimators.
 import { needsAttention } from '../../store/estimator_status';
 import { formatTime } from '../../store/format';
-import type { PlotGroup, PlotSpec } from '../../store/plots/plot_specs';
+import type { DriftSpec } from '../../store/plots/drift_specs';
+import { driftCsv, driftSpecs } from '../../store/plots/drift_specs';
+import type { PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
-import type { Span } from '../../store/time_window';
-import { windowAt, zoomed } from '../../store/time_window';
-import { clockSpan_ns, shownAlignment } from '../../store/state';
+import { shownAlignment } from '../../store/state';
+import { tracksCsv } from '../../store/plots/track_files';
 import type { Topic } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
 import { AlignmentLegend } from '../alignment_legend';
@@ -14,11 +15,16 @@ import { EstimatorTable } from '../estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';
+import { DriftPlot } from './drift_plot';
 import type { PlotActions } from './plot';
-import { Plot } from './plot';
-import { kPathAxes, PathPlot } from './path_plot';
-import type { ShownPlots } from './plot_files';
-import { plotFilesMenu } from './plot_files';
+import { takeTimeKeys } from './time_commands';
+import { kMostReadouts, Plot } from './plot';
+import { besides, kPathAxes, PathPlot } from './path_plot';
+import type { PlotFile } from './plot_files';
+import { saveMenu, timePlotsFile } from './plot_files';
+import type { Group } from './plot_groups';
+import { kByAlignment, kGroups, kNothingYet, kOptional, kUntimed } from './plot_groups';
+import { PlotLegend } from './plot_legend';
 import type { Context, View } from '../view';
 
 const kRedraw_ms = 1000 / 15;
@@ -27,40 +33,31 @@ const kFew = 3;
 /** A plot with axis, title and values. Below this the panel scrolls. */
 const kLeastWidth_px = 190;
 const kLeastHeight_px = 92;
-
-const kGroups = [
-  { name: 'pose', label: 'Pose', hint: 'Position and attitude: truth and estimates' },
-  { name: 'path', label: 'Path', hint: 'The tracks from above and from the side' },
-  { name: 'errors', label: 'Errors', hint: 'Estimates minus truth: position, rotation' },
-  { name: 'estimates', label: 'Estimates', hint: 'Latency and counters of the estimators' },
-  { name: 'image', label: 'Image', hint: 'Texels per pixel, exposure and saturation' },
-  { name: 'sensors', label: 'Sensors', hint: 'IMU, GPS, air data, magnetometer, rangefinder' },
-  { name: 'vehicle', label: 'Vehicle', hint: 'Battery, satellites and link of a live vehicle' },
-  { name: 'estimators', label: 'Status', hint: 'State, drops, latency, CPU, memory, log' },
-] as const;
-type Group = (typeof kGroups)[number]['name'];
+/** More for values in rows of their own. */
+const kLeastHeightOfMany_px = 124;
 
 /** Groups that are panels of their own as well. */
 type PanelGroup = 'errors' | 'image';
 
-/** Groups that depend on the alignment of the estimates. */
-const kByAlignment: readonly Group[] = ['pose', 'path', 'errors'];
-
-/** Groups that are offered only if a run has their series. */
-const kOptional: readonly PlotGroup[] = ['vehicle'];
-
-const kNothingYet: Readonly<Record<Exclude<PlotGroup, 'sensors'>, string>> = {
-  pose: 'No track is shown.',
-  errors: 'No errors yet: they begin with the first pose of an estimator.',
-  estimates: 'No values yet: they begin with the first answer of an estimator.',
-  image: 'No frames yet.',
-  vehicle: 'No live vehicle.',
-};
+const kGridLabel =
+  'Plots over time: move with left and right, zoom with plus and minus, 0 shows the whole flight';
 
 export class PlotsPanel implements View {
   readonly root: HTMLElement;
   private readonly panel: Panel;
-  private readonly grid = h('div', { class: 'plot-grid' });
+  private readonly grid = h('div', { class: 'plot-grid', role: 'group' });
+  private readonly whole = h(
+    'button',
+    {
+      class: 'tab',
+      'data-role': 'whole-flight',
+      title:
+        'Shows the whole flight in all plots (double click in a plot; 0 with the focus on them)',
+      onclick: () => this.context.plotTime.showWhole(),
+    },
+    'Whole flight',
+  );
+  private readonly legend = new PlotLegend();
   private readonly statuses = new EstimatorTable();
   private readonly tabs = h('span', { class: 'tabs' });
   private readonly alignment = h('span', {
@@ -72,8 +69,12 @@ export class PlotsPanel implements View {
   private readonly hoverTime = h('span', { class: 'hover-time' });
   private readonly files: HTMLSelectElement;
   private plots: Plot[] = [];
+  private shownSpecs: readonly PlotSpec[] = [];
   private readonly paths: readonly PathPlot[];
+  private drifts: DriftPlot[] = [];
   private key = '';
+  /** Of the panel: asking for it in each frame causes a layout. */
+  private width_px = 0;
   private drawn_ms = -Infinity;
   private timer = 0;
   /** Time under the mouse. */
@@ -91,16 +92,20 @@ export class PlotsPanel implements View {
     this.paths = kPathAxes.map(
       (axes) => new PathPlot(axes, (t_s) => context.player.seekTime(t_s * 1e9)),
     );
-    this.files = plotFilesMenu(
-      () => this.shownPlots(),
+    this.files = saveMenu(
+      () => this.file(),
       (text) => context.notices.error(text),
     );
     if (only === null) this.panel.tools.append(this.tabs);
-    this.panel.tools.append(this.files, this.alignment, this.hoverTime);
-    this.panel.body.append(this.scales.root, this.grid, this.statuses.root);
+    this.panel.tools.append(this.whole, this.files, this.alignment, this.hoverTime);
+    takeTimeKeys(this.grid, context.plotTime);
+    this.panel.body.append(this.scales.root, this.grid, this.legend.root, this.statuses.root);
     this.root = this.panel.root;
     this.build();
-    new ResizeObserver(() => this.drawSoon()).observe(this.panel.body);
+    new ResizeObserver(() => {
+      this.width_px = this.panel.body.clientWidth;
+      this.drawSoon();
+    }).observe(this.panel.body);
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -110,8 +115,13 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
-    if (changed.has('theme')) for (const plot of [...this.plots, ...this.paths]) plot.repaint();
-    if (changed.has('playback')) this.followCursor();
+    if (changed.has('metrics') && this.group === 'drift') this.drawSoon();
+    if (changed.has('theme')) {
+      for (const plot of [...this.plots, ...this.paths, ...this.drifts]) plot.repaint();
+    }
+    if (changed.has('playback')) this.context.plotTime.follow();
+    // While it is moved, every frame counts.
+    if (changed.has('plotTime')) this.draw();
     if (changed.has('playback') || changed.has('run')) this.moveCursor();
   }
 
@@ -122,11 +132,6 @@ export class PlotsPanel implements View {
   private get group(): Group {
     const { plotGroup } = this.context.store.state;
     return this.only ?? kGroups.find(({ name }) => name === plotGroup)?.name ?? kGroups[0].name;
-  }
-
-  /** The part zoomed to; null = the whole flight. */
-  private get window_s(): Span | null {
-    return this.context.store.state.plotWindow?.span_s ?? null;
   }
 
   private drawSoon(): void {
@@ -142,55 +147,45 @@ export class PlotsPanel implements View {
   private draw(): void {
     const { state } = this.context.store;
     if (this.group === 'sensors' && state.runId !== null) {
-      this.context.sensors.show(state.runId, this.window_s);
+      this.context.sensors.show(state.runId, this.context.plotTime.part_s);
     } else {
       this.onHidden();
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();
     this.scales.draw(state, kByAlignment.includes(this.group));
-    const span_s = this.window_s ?? this.whole();
-    for (const plot of this.plots) plot.draw(span_s);
+    const { part_s, shown_s } = this.context.plotTime;
+    this.whole.disabled = part_s === null;
+    for (const plot of this.plots) plot.draw(shown_s);
+    this.legend.show(this.shownSpecs);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
+    if (this.group === 'drift') this.drawDrifts(driftSpecs(state));
     this.panel.showEmpty(this.emptyText());
     this.moveCursor();
+  }
+
+  /** The two plots stay as long as there are figures. */
+  private drawDrifts(specs: readonly DriftSpec[]): void {
+    if (this.drifts.length !== specs.length) {
+      this.drifts = specs.map((spec) => new DriftPlot(spec));
+      this.grid.replaceChildren(...this.drifts.map(({ root }) => root));
+    }
+    specs.forEach((spec, i) => this.drifts[i]?.draw(spec));
+    this.legend.show(specs);
+    this.panel.body.classList.toggle('has-legend', !this.legend.root.hidden);
   }
 
   private emptyText(): string | null {
     const { runId, sensors, sensorError } = this.context.store.state;
     if (runId === null) return 'Poses of the flight appear here.';
     const { group } = this;
-    if (this.plots.length > 0 || group === 'estimators' || group === 'path') return null;
+    if (this.plots.length + this.drifts.length > 0 || group === 'estimators' || group === 'path')
+      return null;
     if (group !== 'sensors') return kNothingYet[group];
     if (sensorError !== null) return sensorError;
     return sensors === null
       ? 'Reading the samples'
       : 'This aircraft has no sensors except its cameras.';
-  }
-
-  private whole(): Span {
-    const [begin_ns, end_ns] = clockSpan_ns(this.context.store.state);
-    return [begin_ns / 1e9, end_ns / 1e9];
-  }
-
-  private zoom(centre_s: number, factor: number): void {
-    const { store } = this.context;
-    const whole = this.whole();
-    const span_s = factor === 0 ? null : zoomed(this.window_s ?? whole, whole, centre_s, factor);
-    const chosen_ns = store.state.clock?.t_ns ?? null;
-    store.state.plotWindow = span_s === null ? null : { span_s, chosen_ns, reached: true };
-    store.change('plots');
-  }
-
-  /** Keeps the cursor inside the window. */
-  private followCursor(): void {
-    const { store } = this.context;
-    const { clock, plotWindow } = store.state;
-    if (plotWindow === null || clock === null) return;
-    const now = windowAt(plotWindow, this.whole(), clock);
-    if (now === plotWindow) return;
-    store.state.plotWindow = now;
-    store.change('plots');
   }
 
   /** Unchanged as long as the plots need not be rebuilt. */
@@ -206,31 +201,44 @@ export class PlotsPanel implements View {
     return JSON.stringify([this.group, runs, columns, specs.map(specKey)]);
   }
 
-  private shownPlots(): ShownPlots | null {
+  private file(): PlotFile | null {
+    const { group } = this;
+    if (group === 'path') {
+      return {
+        name: group,
+        csv: () => tracksCsv(this.context.store.state),
+        svg: () => besides(this.paths.map((path) => path.drawing())),
+      };
+    }
+    if (group === 'drift') {
+      const drifts = driftSpecs(this.context.store.state);
+      return {
+        name: group,
+        csv: () => driftCsv(drifts),
+        svg: () => besides(this.drifts.map((drift) => drift.drawing())),
+      };
+    }
     const specs = this.specs();
     if (specs.length === 0) return null;
-    const { group } = this;
-    return {
-      group,
-      specs,
-      span_s: this.window_s ?? this.whole(),
-      columns: this.columns(specs.length),
-    };
+    const { shown_s: span_s } = this.context.plotTime;
+    return timePlotsFile({ group, specs, span_s, columns: this.columns(specs.length) });
   }
 
   /** As many as fit; few plots lie below each other. */
   private columns(plots: number): number {
-    const fitting = Math.floor(this.panel.body.clientWidth / kLeastWidth_px);
+    const fitting = Math.floor(this.width_px / kLeastWidth_px);
     return plots <= kFew ? 1 : Math.min(kMostColumns, Math.max(1, fitting));
   }
 
   private specs(): PlotSpec[] {
-    if (this.group === 'estimators' || this.group === 'path') return [];
-    return plotSpecs(this.context.store.state, this.group);
+    const { group } = this;
+    if (group === 'estimators' || group === 'path' || group === 'drift') return [];
+    return plotSpecs(this.context.store.state, group);
   }
 
   private build(): void {
-    const { state } = this.context.store;
+    const { plotTime, store } = this.context;
+    const { state } = store;
     this.key = this.wantedKey();
     for (const plot of this.plots) plot.destroy();
     // The mouse does not leave a plot that is removed.
@@ -238,23 +246,36 @@ export class PlotsPanel implements View {
     const actions: PlotActions = {
       onSeek: (t_s: number) => this.context.player.seekTime(t_s * 1e9),
       onHover: (t_s: number | null) => this.hover(t_s),
-      onZoom: (centre_s: number, factor: number) => this.zoom(centre_s, factor),
+      onZoom: (centre_s, factor) => plotTime.zoom(centre_s, factor),
+      onPan: (by_s) => plotTime.pan(by_s),
+      onWhole: () => plotTime.showWhole(),
     };
     const specs = this.specs();
+    this.shownSpecs = specs;
+    this.legend.show(specs);
+    this.panel.body.classList.toggle('has-legend', !this.legend.root.hidden);
     const columns = this.columns(specs.length);
-    this.files.hidden = specs.length === 0;
+    this.files.hidden =
+      this.group === 'estimators' || (specs.length === 0 && !kUntimed.includes(this.group));
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
     );
     const down = Math.ceil(specs.length / columns);
     this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
-    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${kLeastHeight_px}px, 1fr))`;
-    if (this.group === 'path') this.grid.removeAttribute('style');
+    const many = specs.some(({ curves }) => curves.length > kMostReadouts);
+    const least_px = many ? kLeastHeightOfMany_px : kLeastHeight_px;
+    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${least_px}px, 1fr))`;
+    if (kUntimed.includes(this.group)) this.grid.removeAttribute('style');
+    const overTime = specs.length > 0;
+    this.whole.hidden = !overTime;
+    setAttribute(this.grid, 'tabindex', overTime ? '0' : null);
+    setAttribute(this.grid, 'aria-label', overTime ? kGridLabel : null);
     this.grid.hidden = this.group === 'estimators';
     this.statuses.root.hidden = this.group !== 'estimators';
     if (this.group === 'estimators') this.statuses.draw(state);
     setAttribute(this.grid, 'data-group', this.group);
+    this.drifts = [];
     const drawn = this.group === 'path' ? this.paths : this.plots;
     this.grid.replaceChildren(...drawn.map(({ root }) => root));
     setText(this.alignment, this.alignmentText());
@@ -350,6 +371,6 @@ export class PlotsPanel implements View {
   }
 }
 
-function specKey({ key, curves }: PlotSpec) {
-  return [key, curves.map(({ name, hue }) => [name, hue])];
+function specKey({ key, curves, lanes }: PlotSpec) {
+  return [key, curves.map(({ name, hue }) => [name, hue]), lanes?.length];
 }

@@ -4,12 +4,17 @@ import type { ErrorAxis } from '../../store/runs/error_axis';
 import { axisTicks, errorAxis, histogram, placeOn } from '../../store/runs/error_axis';
 import type { Repeats } from '../../store/runs/repeats';
 import { kSameFlight, repeatChoices, repeatedRuns, repeatsOf } from '../../store/runs/repeats';
+import { repeatsCsv } from '../../store/runs/repeats_csv';
+import { svgFile } from '../../store/plots/svg_pen';
 import type { State, Topic } from '../../store/state';
 import { estimateColour } from '../colours';
 import { h, rebuild } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
-import { svg } from '../svg';
+import { paint } from '../paint';
+import type { PlotFile } from '../plots/plot_files';
+import { saveMenu } from '../plots/plot_files';
+import { drawingContent, svg } from '../svg';
 import type { Context, View } from '../view';
 
 const kRow_px = 58;
@@ -30,10 +35,17 @@ export class RepeatsPanel implements View {
     title: 'Runs whose position RMSE, alignment init_scale, is compared',
   });
   private readonly drawing = h('div', { class: 'repeats' });
+  private repeats: readonly Repeats[] = [];
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('repeats', 'Repeated flights');
-    this.panel.tools.append(this.choice);
+    this.panel.tools.append(
+      this.choice,
+      saveMenu(
+        () => this.file(),
+        (text) => context.notices.error(text),
+      ),
+    );
     this.panel.body.append(this.drawing);
     this.root = this.panel.root;
     const draw = () => this.draw(context.store.state);
@@ -56,11 +68,23 @@ export class RepeatsPanel implements View {
     this.choice.value = still ? chosen : kSameFlight;
     const compared = repeatedRuns(runs, this.choice.value, state.run);
     const repeats = repeatsOf(compared);
+    this.repeats = repeats;
     const width_px = Math.max(kLeastWidth_px, this.panel.body.clientWidth - kLabels_px);
     rebuild(this.drawing, JSON.stringify([repeats, width_px, state.run?.estimators]), () =>
       repeats.length === 0 ? [] : [this.picture(repeats, width_px, state.run?.estimators ?? [])],
     );
     this.panel.showEmpty(repeats.length > 0 ? null : 'None of these runs is scored.');
+  }
+
+  private file(): PlotFile | null {
+    const drawing = this.drawing.querySelector('svg');
+    if (drawing === null) return null;
+    const [width, height] = [drawing.width.baseVal.value, drawing.height.baseVal.value];
+    return {
+      name: 'repeats',
+      csv: () => repeatsCsv(this.repeats),
+      svg: () => svgFile(width, height, paint('var(--panel)'), drawingContent(drawing)),
+    };
   }
 
   private picture(repeats: readonly Repeats[], width_px: number, named: readonly string[]): Node {

@@ -3,15 +3,22 @@ import type { Evaluation } from '../../protocol/score_types';
 import type { Path } from '../../store/plots/path_frame';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { ScoreGroup } from '../../store/scoring/score_specs';
-import { groupSpan, pathMarks, scorePaths, scoreSpecs } from '../../store/scoring/score_specs';
+import {
+  groupSpan,
+  pathMarks,
+  scorePaths,
+  scorePathsCsv,
+  scoreSpecs,
+} from '../../store/scoring/score_specs';
 import type { Span } from '../../store/time_window';
-import { zoomed } from '../../store/time_window';
+import { panned, zoomed } from '../../store/time_window';
 import { h, rebuild } from '../dom';
 import type { PathAxes } from '../plots/path_plot';
-import { kPathAxes, PathPlot } from '../plots/path_plot';
+import { besides, kPathAxes, PathPlot } from '../plots/path_plot';
 import type { PlotActions } from '../plots/plot';
 import { Plot } from '../plots/plot';
-import { plotFilesMenu } from '../plots/plot_files';
+import type { PlotFile } from '../plots/plot_files';
+import { saveMenu, timePlotsFile } from '../plots/plot_files';
 import type { Context } from '../view';
 
 const kGroups: readonly { name: ScoreGroup; label: string; hint: string; columns: number }[] = [
@@ -33,8 +40,8 @@ export class ScorePlots {
   private window: Span | null = null;
 
   constructor(private readonly context: Context) {
-    this.files = plotFilesMenu(
-      () => this.shown(),
+    this.files = saveMenu(
+      () => this.file(),
       (text) => context.notices.error(text),
     );
     this.paths = kPathAxes.map((axes) => ({
@@ -90,11 +97,20 @@ export class ScorePlots {
     return this.window ?? this.whole();
   }
 
-  private shown() {
+  private file(): PlotFile | null {
+    const { series, mode } = this.scored();
+    if (series === null) return null;
+    const name = `scores-${this.group}`;
+    if (this.group === 'path') {
+      return {
+        name,
+        csv: () => scorePathsCsv(series, mode),
+        svg: () => besides(this.paths.map(({ plot }) => plot.drawing())),
+      };
+    }
     const specs = this.specs();
     if (specs.length === 0) return null;
-    const { group } = this;
-    return { group: `scores-${group}`, specs, span_s: this.span(), columns: this.columns() };
+    return timePlotsFile({ group: name, specs, span_s: this.span(), columns: this.columns() });
   }
 
   private columns(): number {
@@ -112,11 +128,12 @@ export class ScorePlots {
     const actions: PlotActions = {
       onSeek: moveTo,
       onHover: moveTo,
-      onZoom: (centre, factor) => this.zoom(centre, factor),
+      onZoom: (centre, factor) => this.move((span, whole) => zoomed(span, whole, centre, factor)),
+      onPan: (by) => this.move((span, whole) => panned(span, whole, by)),
+      onWhole: () => this.move(() => null),
     };
     const specs = this.specs();
     const columns = this.columns();
-    this.files.hidden = this.group === 'path';
     this.plots = specs.map(
       (spec, i) =>
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
@@ -143,9 +160,9 @@ export class ScorePlots {
     for (const { plot, tracks } of this.paths) plot.show(tracks, pathMarks(tracks, t_s));
   }
 
-  private zoom(centre: number, factor: number): void {
-    const whole = this.whole();
-    this.window = factor === 0 ? null : zoomed(this.window ?? whole, whole, centre, factor);
+  /** Shows another part; null = everything. */
+  private move(to: (span: Span, whole: Span) => Span | null): void {
+    this.window = to(this.span(), this.whole());
     this.draw();
   }
 

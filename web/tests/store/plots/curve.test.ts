@@ -33,7 +33,7 @@ describe('decimated', () => {
     }
     for (let i = 0; i < 500; i += 1) {
       const inside = values.slice(i * 200, (i + 1) * 200);
-      const drawn = line.values.filter((_, k) => Math.floor((line.t_s[k] ?? 0) / 0.2) === i);
+      const drawn = line.values.filter((_, k) => Math.floor((line.t_s[k] ?? 0) * 5) === i);
       expect(Math.max(...drawn)).toBeGreaterThanOrEqual(Math.max(...inside) - 1e-3);
       expect(Math.min(...drawn)).toBeLessThanOrEqual(Math.min(...inside) + 1e-3);
     }
@@ -42,6 +42,19 @@ describe('decimated', () => {
   it('reaches from one point before the span to one after it', () => {
     const line = decimated(curve(every(1, 100), every(1, 100)), [10.5, 12.5], 100);
     expect(line.t_s).toEqual([10, 11, 12, 13]);
+  });
+
+  it('keeps the shape of a curve that is moved', () => {
+    const t_s = every(0.01, 10_000);
+    const noise = curve(
+      t_s,
+      t_s.map((t) => Math.sin(1e5 * t)),
+    );
+    const inside = (begin_s: number) => {
+      const { t_s: drawn_s, values } = decimated(noise, [begin_s, begin_s + 50], 100);
+      return values.filter((_, k) => (drawn_s[k] ?? 0) > 25 && (drawn_s[k] ?? 0) < 45);
+    };
+    expect(inside(10.37)).toEqual(inside(0));
   });
 
   it('breaks where there is no value, at a gap, and where an angle wraps', () => {

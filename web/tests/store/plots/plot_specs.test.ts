@@ -73,7 +73,10 @@ describe('plotSpecs', () => {
       ['error_m', 'm', 'Position error'],
     ]);
     expect(errors[0]?.curves.map(({ name }) => name)).toEqual(['A feature', 'B feature']);
-    expect(plotSpecs(state, 'estimates').map(({ label }) => label)).toEqual(['Inliers']);
+    expect(plotSpecs(state, 'estimates').map(({ label }) => label)).toEqual([
+      'Inliers',
+      'Missed frames',
+    ]);
     expect(plotSpecs(state, 'image')).toEqual([]);
   });
 
@@ -82,6 +85,25 @@ describe('plotSpecs', () => {
     const curve = plotSpecs(state, 'errors')[0]?.curves[1]?.curve();
     expect(curve).toMatchObject({ t_offset_s: 5, t_scale_s: 1e-9, scale: 1 });
     expect([...(curve?.values as Float64Array)]).toEqual([0.5, 1.5]);
+  });
+
+  it('has the states of the shown estimates where they matter', () => {
+    const { store, session } = twoRuns();
+    session.showTrack('r1', 'feature', false);
+    for (const group of ['pose', 'errors', 'estimates'] as const) {
+      const lanes = plotSpecs(store.state, group)[0]?.lanes ?? [];
+      expect(lanes.map(({ name, offset_s }) => [name, offset_s])).toEqual([['B feature', 5]]);
+      expect(lanes[0]?.spans()).toHaveLength(1);
+    }
+  });
+
+  it('counts the frames that an estimator has missed', () => {
+    const missed = plotSpecs(twoRuns().store.state, 'estimates').at(-1);
+    const curve = missed?.curves[0]?.curve();
+    expect(curve?.values.length).toBe(63);
+    expect(curve?.values[1]).toBe(0);
+    expect(curve?.values[62]).toBe(61);
+    expect(missed?.curves[1]?.curve()).toBeNull();
   });
 
   it('reads poses at the clock as the server sends them', () => {
