@@ -85,7 +85,7 @@ describe('PlotTime', () => {
     viewing.store.state.plotWindow = link;
     goTo(30, { playing: true });
     time.follow();
-    expect(time.part_s?.[0]).toBeCloseTo(29);
+    expect(time.part_s?.[0]).toBeCloseTo(21);
   });
 
   it('shows other runs whole', () => {
