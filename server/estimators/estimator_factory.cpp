@@ -29,12 +29,17 @@ Result<std::map<std::string, double>> numbers_of(const VoParameters& parameters)
   return numbers;
 }
 
-Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) {
+Result<odometry::feature::FeatureParameters> feature_parameters_of(
+    const EstimatorSpec& spec, const EstimatorSetting& setting) {
   auto values = numbers_of(spec.parameters);
   if (!values) return values.error();
   values->try_emplace("seed", static_cast<double>(setting.seed));
   values->try_emplace("threads", setting.lockstep ? 1.0 : 2.0);
-  const auto parameters = odometry::feature::feature_parameters_from(*values);
+  return odometry::feature::feature_parameters_from(*values);
+}
+
+Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) {
+  const auto parameters = feature_parameters_of(spec, setting);
   if (!parameters) return parameters.error();
   return odometry::feature::create_feature_odometry(*parameters);
 }
@@ -52,7 +57,7 @@ Result<ToyParameters> toy_parameters_from(const VoParameters& given) {
       parameters.scene_depth_m = value;
     } else {
       return Error{ErrorCode::kInvalidArgument,
-                   key + ": no such parameter (known: drift, scale, scene_depth_m)"};
+                   "parameters." + key + ": must be drift, scale or scene_depth_m"};
     }
   }
   return parameters;
@@ -69,20 +74,39 @@ Port create_toy(const EstimatorSpec& spec, const ToyTruthAt& truth) {
                                 : create_drifting_estimator(truth, *parameters);
 }
 
-Port create_baseline(const EstimatorSpec& spec, const EstimatorSetting& setting) {
+Result<odometry::baseline::HomographyParameters> homography_parameters_of(
+    const EstimatorSpec& spec) {
   const auto values = numbers_of(spec.parameters);
   if (!values) return values.error();
+  return odometry::baseline::homography_parameters_from(*values);
+}
+
+/// Of a baseline that has no parameters.
+Status check_no_parameters(const EstimatorSpec& spec) {
+  if (spec.parameters.empty()) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "parameters." + spec.parameters.begin()->first + ": must be left out: " + spec.type +
+                   " has no parameters"};
+}
+
+Port create_baseline(const EstimatorSpec& spec, const EstimatorSetting& setting) {
   if (spec.type == "baseline_homography") {
-    const auto parameters = odometry::baseline::homography_parameters_from(*values);
+    const auto parameters = homography_parameters_of(spec);
     if (!parameters) return parameters.error();
     return odometry::baseline::create_homography(*parameters);
   }
-  if (!values->empty()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "parameters." + values->begin()->first + ": " + spec.type + " has no parameters"};
-  }
+  if (Status status = check_no_parameters(spec); !status) return status.error();
   if (spec.type == "baseline_hold") return odometry::baseline::create_hold();
   return odometry::baseline::create_dead_reckoning(setting.T_body_camera);
+}
+
+Status check_parameters(const EstimatorSpec& spec) {
+  const auto status_of = [](const auto& result) { return result ? Status{} : result.error(); };
+  if (spec.type == "feature") return status_of(feature_parameters_of(spec, {}));
+  if (spec.type == "baseline_homography") return status_of(homography_parameters_of(spec));
+  if (is_baseline_estimator(spec.type)) return check_no_parameters(spec);
+  if (is_test_estimator(spec.type)) return status_of(toy_parameters_from(spec.parameters));
+  return {};
 }
 
 Port create(const EstimatorSpec& spec, const EstimatorSetting& setting, const ToyTruthAt& truth) {
@@ -104,6 +128,18 @@ Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
   Port port = create(spec, setting, truth);
   if (!port) return port.error().in("estimator \"" + spec.name + "\"");
   return port;
+}
+
+Status check_native_parameters(const std::vector<EstimatorSpec>& specs) {
+  std::string messages;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const Status status = check_parameters(specs[i]);
+    if (status) continue;
+    messages += (messages.empty() ? "" : "\n") + ("estimators." + std::to_string(i)) + "." +
+                status.error().message;
+  }
+  if (messages.empty()) return {};
+  return Error{ErrorCode::kInvalidArgument, messages};
 }
 
 }  // namespace overfly::server

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/estimators/estimator_setting.hpp"
@@ -17,5 +18,11 @@ namespace overfly::server {
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_estimator(const EstimatorSpec& spec,
                                                                const EstimatorSetting& setting,
                                                                const ToyTruthAt& truth = {});
+
+/// Checks the parameters of native estimators before anything flies. Those behind doors know theirs
+/// only when they run.
+/// Errors: kInvalidArgument, a line for each: "estimators.I.parameters.FIELD = VALUE: must be
+/// LIMIT".
+[[nodiscard]] Status check_native_parameters(const std::vector<EstimatorSpec>& specs);
 
 }  // namespace overfly::server

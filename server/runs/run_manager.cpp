@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/estimators/estimator_factory.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/record/comparison/compared_document.hpp"
 #include "server/record/run_info.hpp"
@@ -69,13 +70,14 @@ Result<RunInfo> RunManager::start(Scenario scenario,
                                   const std::string& idempotency_key,
                                   StartReport* report) {
   StartReport unasked;
-  if (Status status = check_link(scenario); !status) return status.error();
+  if (Status status = check_start(scenario); !status) return status.error();
   return impl_->enqueue(
       std::move(scenario), idempotency_key, report != nullptr ? *report : unasked);
 }
 
-Status RunManager::check_link(const Scenario& scenario) const {
-  return server::check_link(scenario, impl_->options.allowed_links);
+Status RunManager::check_start(const Scenario& scenario) const {
+  if (Status link = check_link(scenario, impl_->options.allowed_links); !link) return link;
+  return check_native_parameters(scenario.estimators);
 }
 
 Status RunManager::check_memory(const Scenario& scenario) const {

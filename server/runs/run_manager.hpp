@@ -63,8 +63,9 @@ class RunManager {
   [[nodiscard]] Result<RunInfo> start(Scenario scenario,
                                       const std::string& idempotency_key = "",
                                       StartReport* report = nullptr);
-  /// Whether the server may open the link of a live flight. Errors: as server::check_link.
-  [[nodiscard]] Status check_link(const Scenario& scenario) const;
+  /// Whether the server may open the link of a live flight, and whether the parameters of native
+  /// estimators are in order. Errors: as server::check_link and check_native_parameters.
+  [[nodiscard]] Status check_start(const Scenario& scenario) const;
   /// Whether a flight fits in the server's memory if it is the only one.
   /// Errors: as MemoryBudget::check.
   [[nodiscard]] Status check_memory(const Scenario& scenario) const;

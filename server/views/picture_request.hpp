@@ -12,6 +12,7 @@
 
 #include "core/earth/geodesy.hpp"
 #include "core/result.hpp"
+#include "server/views/track_look.hpp"
 
 namespace overfly::server {
 
@@ -53,7 +54,7 @@ struct SceneTracks {
   std::int64_t t_ns = 0;  ///< of the run: the tracks end there
   bool live = false;      ///< use the latest rows if the run is live
   std::string alignment = "init_scale";
-  std::size_t first_colour = 0;  ///< index of the first estimator's colour
+  TrackLook look{};
 };
 
 /// What an error picture compares.
@@ -85,7 +86,7 @@ struct PictureRequest {
   bool live = false;                     ///< use the latest picture if the run is live
   SceneSettings scene;                   ///< kScene
   std::string alignment = "init_scale";  ///< kScene, kError: of the estimates
-  std::size_t first_colour = 0;          ///< kScene: index of the first estimator's colour
+  TrackLook look{};                      ///< kScene: of the run's tracks
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]
   int max_width_px = 1280;               ///< all but scenes are halved until they fit

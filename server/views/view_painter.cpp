@@ -93,7 +93,7 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   renderer::SceneContent content;
   std::vector<PlacedLabel> places;
   const bool onboard = settings.mode == SceneMode::kOnboard;
-  add_run({request.run_id, *timeline, ribbons, row, request.first_colour, Pose{}, onboard},
+  add_run({request.run_id, *timeline, ribbons, row, request.look, Pose{}, onboard},
           settings.show,
           &content,
           &places);
@@ -148,7 +148,7 @@ void ViewPainter::add_tracks(const SceneTracks& tracks,
            **timeline,
            ribbons,
            *row,
-           tracks.first_colour,
+           tracks.look,
            T_world_other(origin, *other_origin),
            false},
           show,
@@ -163,6 +163,7 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
   std::vector<Eigen::Vector3f> all;
   const auto folder = runs_.folder(request.run_id);
   for (std::size_t i = 0; i < timeline.estimators().size(); ++i) {
+    if (!request.look.shows(timeline.estimators()[i])) continue;
     std::vector<Eigen::Vector3f> points;
     if (request.live) {
       points = timeline.live_points(i);

@@ -11,19 +11,12 @@ constexpr std::size_t kEveryRow = 3;
 constexpr std::size_t kRowsAtOnce = 1024;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-constexpr std::array<std::array<float, 3>, 6> kEstimatorRgb = {{{0.15F, 0.45F, 1.0F},
-                                                                {0.10F, 0.72F, 0.35F},
-                                                                {0.95F, 0.65F, 0.10F},
-                                                                {0.65F, 0.35F, 0.90F},
-                                                                {0.10F, 0.75F, 0.80F},
-                                                                {0.85F, 0.35F, 0.60F}}};
-
 constexpr double kEstimateRibbonWidth = 0.5;  ///< relative to the truth's
 
 renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
                            const std::vector<Pose>& poses,
                            std::int64_t t_ns,
-                           const std::array<float, 3>& rgb) {
+                           const TrackRgb& rgb) {
   const auto count = std::upper_bound(stamps_ns.begin(), stamps_ns.end(), t_ns) - stamps_ns.begin();
   renderer::Ribbon ribbon;
   ribbon.rgb = rgb;
@@ -32,10 +25,6 @@ renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
 }
 
 }  // namespace
-
-std::array<float, 3> estimator_rgb(std::size_t index) {
-  return kEstimatorRgb[index % kEstimatorRgb.size()];
-}
 
 ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline, std::string alignment)
     : timeline_(std::move(timeline)),
@@ -100,14 +89,17 @@ void ViewRibbons::refresh_estimate(std::size_t estimator) {
 
 std::vector<renderer::Ribbon> ViewRibbons::until(std::int64_t t_ns,
                                                  const Pose& T_world_body_now,
-                                                 std::size_t first_colour) const {
+                                                 const TrackLook& look) const {
   std::vector<renderer::Ribbon> ribbons;
-  ribbons.push_back(ribbon_of(truth_.t_ns, truth_.T_world_body, t_ns, kTruthRgb));
-  ribbons.back().T_world_body.push_back(T_world_body_now);
+  if (look.shows("")) {
+    ribbons.push_back(ribbon_of(truth_.t_ns, truth_.T_world_body, t_ns, look.truth_rgb()));
+    ribbons.back().T_world_body.push_back(T_world_body_now);
+  }
   for (std::size_t i = 0; i < estimates_.size(); ++i) {
+    const std::string& name = timeline_->estimators()[i];
+    if (!look.shows(name)) continue;
     for (const Piece& piece : estimates_[i].pieces) {
-      auto ribbon =
-          ribbon_of(piece.t_ns, piece.T_world_body, t_ns, estimator_rgb(first_colour + i));
+      auto ribbon = ribbon_of(piece.t_ns, piece.T_world_body, t_ns, look.rgb_of(name, i));
       // Narrower than the truth, so that the red edges stay visible where both coincide.
       ribbon.wing_span_m *= kEstimateRibbonWidth;
       if (ribbon.T_world_body.size() > 1) ribbons.push_back(std::move(ribbon));
@@ -130,7 +122,7 @@ std::optional<Eigen::Vector3d> ViewRibbons::truth_at(std::int64_t t_ns) const {
 }
 
 std::vector<renderer::SceneContent::Line> ViewRibbons::errors_until(std::int64_t t_ns,
-                                                                    std::size_t first_colour,
+                                                                    const TrackLook& look,
                                                                     std::size_t most) const {
   constexpr double kWidthPx = 1.2;
   std::vector<renderer::SceneContent::Line> lines;
@@ -138,7 +130,9 @@ std::vector<renderer::SceneContent::Line> ViewRibbons::errors_until(std::int64_t
   const std::int64_t span_ns = std::max<std::int64_t>(t_ns - truth_.t_ns.front(), 1);
   const std::int64_t gap_ns = span_ns / static_cast<std::int64_t>(most) + 1;
   for (std::size_t i = 0; i < estimates_.size(); ++i) {
-    const std::array<float, 3> rgb = estimator_rgb(first_colour + i);
+    const std::string& name = timeline_->estimators()[i];
+    if (!look.shows(name)) continue;
+    const TrackRgb rgb = look.rgb_of(name, i);
     std::int64_t next_ns = truth_.t_ns.front();
     for (const Piece& piece : estimates_[i].pieces) {
       for (std::size_t k = 0; k < piece.t_ns.size() && piece.t_ns[k] <= t_ns; ++k) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,12 +12,9 @@
 #include "renderer/renderer.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
+#include "server/views/track_look.hpp"
 
 namespace overfly::server {
-
-/// Colour of the truth, and of an estimate by its index, in [0, 1].
-inline constexpr std::array<float, 3> kTruthRgb = {0.90F, 0.15F, 0.15F};
-[[nodiscard]] std::array<float, 3> estimator_rgb(std::size_t index);
 
 class ViewRibbons {
  public:
@@ -28,15 +24,15 @@ class ViewRibbons {
 
   /// Adds the rows since the last call: every third one, which is less than a wing span apart.
   void refresh();
-  /// The truth up to t (ending at `T_world_body_now`) and each estimate's tracked pieces up to t.
-  /// @param first_colour  index of the first estimator's colour
+  /// The truth up to t (ending at `T_world_body_now`) and each estimate's tracked pieces up to t,
+  /// as far as they are shown.
   [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
                                                     const Pose& T_world_body_now,
-                                                    std::size_t first_colour) const;
+                                                    const TrackLook& look) const;
   /// Lines from the truth to each estimate along the path up to t, at most `most` of each estimate
   /// at equal intervals of time.
   [[nodiscard]] std::vector<renderer::SceneContent::Line> errors_until(std::int64_t t_ns,
-                                                                       std::size_t first_colour,
+                                                                       const TrackLook& look,
                                                                        std::size_t most) const;
   /// Centre of the box around the flown trajectory; zero before the first frame [m].
   [[nodiscard]] Eigen::Vector3d centre() const;

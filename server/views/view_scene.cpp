@@ -87,21 +87,23 @@ void add_run(const SceneRun& run,
     constexpr double kNearM = 15.0;
     return run.seen_from && (T_scene_body.translation - p_truth).norm() < kNearM;
   };
-  if (show.aircraft && !run.seen_from) {
+  const bool shows_truth = run.look.shows("") && !run.seen_from;
+  if (show.aircraft && shows_truth) {
     renderer::SceneContent::Aircraft truth;
     truth.T_world_body = run.T_scene_world * run.row.T_world_body;
-    truth.rgb = kTruthRgb;
+    truth.rgb = run.look.truth_rgb();
     content->aircraft.push_back(truth);
   }
-  if (!run.seen_from) places->push_back({{run.run_id, "", 0.0, 0.0, 0.0, {}}, p_truth});
+  if (shows_truth) places->push_back({{run.run_id, "", 0.0, 0.0, 0.0, {}}, p_truth});
   const auto& names = run.timeline.estimators();
   for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!run.look.shows(names[i])) continue;
     const auto estimate = run.timeline.estimate_at(i, run.row.t_ns);
     const auto T_world_body =
         estimate ? run.ribbons.T_world_body(i, *estimate) : std::optional<Pose>();
     if (!T_world_body) continue;
     const Pose T_scene_body = run.T_scene_world * *T_world_body;
-    const std::array<float, 3> rgb = estimator_rgb(run.first_colour + i);
+    const TrackRgb rgb = run.look.rgb_of(names[i], i);
     if (show.aircraft && !hides_view(T_scene_body)) {
       renderer::SceneContent::Aircraft ghost;
       ghost.T_world_body = T_scene_body;
@@ -115,7 +117,7 @@ void add_run(const SceneRun& run,
   }
   if (show.ribbons) {
     for (renderer::Ribbon& ribbon :
-         run.ribbons.until(run.row.t_ns, run.row.T_world_body, run.first_colour)) {
+         run.ribbons.until(run.row.t_ns, run.row.T_world_body, run.look)) {
       std::vector<Pose>& poses = ribbon.T_world_body;
       for (Pose& pose : poses) pose = run.T_scene_world * pose;
       while (!poses.empty() && hides_view(poses.back())) poses.pop_back();
@@ -124,7 +126,7 @@ void add_run(const SceneRun& run,
   }
   if (show.error_history) {
     constexpr std::size_t kMostLines = 400;
-    for (auto line : run.ribbons.errors_until(run.row.t_ns, run.first_colour, kMostLines)) {
+    for (auto line : run.ribbons.errors_until(run.row.t_ns, run.look, kMostLines)) {
       line.from_world = run.T_scene_world * line.from_world;
       line.to_world = run.T_scene_world * line.to_world;
       content->lines.push_back(line);

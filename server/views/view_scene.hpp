@@ -39,10 +39,10 @@ struct SceneRun {
   std::string run_id;
   const RunTimeline& timeline;
   const ViewRibbons& ribbons;
-  FrameRow row;                  ///< at the instant
-  std::size_t first_colour = 0;  ///< index of the first estimator's colour
-  Pose T_scene_world;            ///< its world frame in that of the scene
-  bool seen_from = false;        ///< the viewpoint is in its aircraft, which is therefore not shown
+  FrameRow row;  ///< at the instant
+  TrackLook look;
+  Pose T_scene_world;      ///< its world frame in that of the scene
+  bool seen_from = false;  ///< the viewpoint is in its aircraft, which is therefore not shown
 };
 
 /// Adds aircraft, ribbons, estimates and error lines.

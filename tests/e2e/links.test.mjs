@@ -104,7 +104,10 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await dashboard.untilFrames(kPanels);
     await page.locator(`.run[data-run="${kFast}"] .compare`).click();
     await page.locator(`[data-shown-run="${kFast}"]`).waitFor();
-    await untilWritten('t', 'run');
+    await untilWritten('t');
+    await dashboard.until(
+      () => new URLSearchParams(location.hash.slice(1)).getAll('run').length === 2,
+    );
     assert.deepEqual([...new URLSearchParams(await fields()).keys()], ['layout', 'run', 'run', 't']);
   });
 

@@ -206,7 +206,7 @@ MAY_INCLUDE = {
                    "server/worlds/", "server/frame_cache", "server/camera/", "server/estimators/"],
     "server/runs": ["core/", "evaluation/", "terrain/", "server/files/", "server/timing/", "server/scenario/",
                     "server/record/", "server/scoring/", "server/timeline/", "server/worlds/",
-                    "server/camera/", "server/run/"],
+                    "server/camera/", "server/estimators/estimator_factory.hpp", "server/run/"],
     "server/views": ["core/", "renderer/", "server/files/", "server/timing/", "server/record/",
                      "server/scoring/", "server/timeline/", "server/camera/", "server/runs/",
                      "server/views/images", "server/views/video"],

@@ -104,7 +104,8 @@ HttpResponse check(RunManager* runs, const RouteCall& call) {
   }
   auto scenario = runs->library().read(*document);
   if (!scenario) return invalid(scenario.error().message);
-  if (const Status link = runs->check_link(*scenario); !link) return invalid(link.error().message);
+  if (const Status start = runs->check_start(*scenario); !start)
+    return invalid(start.error().message);
   return json_response(200,
                        {{"valid", true},
                         {"message", ""},

@@ -1,7 +1,9 @@
 #include "server/net/stream/client_message.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "core/motion/pose.hpp"
@@ -20,6 +22,7 @@ constexpr std::size_t kMaxNameBytes = 200;
 /// As many runs as a viewer can watch.
 constexpr std::size_t kMaxSceneRuns = 16;
 constexpr std::int64_t kMaxColour = 1000;
+constexpr std::size_t kMaxTracks = 64;  ///< of a run, with a look of their own
 
 /// The time of a day, so that offsets cannot add up to more than 64 bits.
 constexpr std::int64_t kMaxOffsetNs = 86'400'000'000'000;
@@ -69,8 +72,51 @@ bool has_camera(const std::string& name) {
   return name == "camera" || name == "depth" || name == "error";
 }
 
-std::size_t read_colour(JsonFields* fields) {
-  return static_cast<std::size_t>(fields->integer("first_colour", 0, kMaxColour).value_or(0));
+/// "#rrggbb"; empty if it is none.
+std::optional<server::TrackRgb> rgb_from(const json& text) {
+  if (!text.is_string()) return std::nullopt;
+  const auto& colour = text.get_ref<const std::string&>();
+  if (colour.size() != 7 || colour.front() != '#') return std::nullopt;
+  server::TrackRgb rgb{};
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    const char* const begin = colour.data() + 1 + 2 * i;
+    int value = 0;
+    const auto [end, error] = std::from_chars(begin, begin + 2, value, 16);
+    if (error != std::errc() || end != begin + 2 || value < 0) return std::nullopt;
+    rgb.at(i) = static_cast<float>(value) / 255.0F;
+  }
+  return rgb;
+}
+
+/// `first_colour`, `hide` and `colours`.
+server::TrackLook read_look(JsonFields* fields) {
+  server::TrackLook look;
+  look.first_colour =
+      static_cast<std::size_t>(fields->integer("first_colour", 0, kMaxColour).value_or(0));
+  const json* hide = fields->array("hide");
+  const json* colours = fields->object("colours");
+  if (hide != nullptr) {
+    for (const json& name : *hide) {
+      if (!name.is_string() || name.get_ref<const std::string&>().size() > kMaxNameBytes ||
+          hide->size() > kMaxTracks) {
+        fields->reject("hide", ": must be at most " + std::to_string(kMaxTracks) + " names");
+        return look;
+      }
+      look.hidden.insert(name.get<std::string>());
+    }
+  }
+  if (colours == nullptr) return look;
+  for (const auto& [name, text] : colours->items()) {
+    const auto rgb = rgb_from(text);
+    if (!rgb || name.size() > kMaxNameBytes || colours->size() > kMaxTracks) {
+      fields->reject("colours",
+                     ": must be at most " + std::to_string(kMaxTracks) +
+                         " names with colours like \"#1a2b3c\"");
+      return look;
+    }
+    look.colours[name] = *rgb;
+  }
+  return look;
 }
 
 /// Other runs whose tracks a scene shows.
@@ -91,7 +137,7 @@ std::vector<SceneRun> read_with(JsonFields* fields) {
     JsonFields entry((*with)[i], where);
     SceneRun run;
     run.run_id = require_run(&entry);
-    run.first_colour = read_colour(&entry);
+    run.look = read_look(&entry);
     if (const Status status = entry.finish(); !status) {
       fields->reject("with", ": " + status.error().message);
       return runs;
@@ -123,11 +169,12 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   if (!stream.view.empty() && stream.name != "scene") {
     fields.reject("view", ": applies only to the stream \"scene\"");
   }
-  stream.first_colour = read_colour(&fields);
+  stream.look = read_look(&fields);
   stream.with = read_with(&fields);
-  if ((stream.first_colour != 0 || !stream.with.empty()) && stream.name != "scene") {
-    fields.reject(stream.with.empty() ? "first_colour" : "with",
-                  ": applies only to the stream \"scene\"");
+  if (stream.name != "scene") {
+    for (const char* name : {"first_colour", "hide", "colours", "with"}) {
+      if (entry.contains(name)) fields.reject(name, ": applies only to the stream \"scene\"");
+    }
   }
   stream.max_hz = fields.number("max_hz", 0.1, 120.0).value_or(stream.max_hz);
   stream.quality = static_cast<int>(fields.integer("quality", 1, 100).value_or(stream.quality));

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
 /// Another run whose tracks a scene shows.
 struct SceneRun {
   std::string run_id;
-  std::size_t first_colour = 0;  ///< index of its first estimator's colour
+  server::TrackLook look{};
   bool operator==(const SceneRun&) const = default;
 };
 
@@ -36,7 +36,7 @@ struct StreamRequest {
   bool video = false;               ///< may be sent as VP8
   std::string camera = {};          ///< for "camera", "depth", "error"; empty = the run's first
   std::string view = {};            ///< for the stream "scene": the name of its view
-  std::size_t first_colour = 0;     ///< likewise: index of the first estimator's colour
+  server::TrackLook look{};         ///< likewise: of the run's tracks
   std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows
   bool operator==(const StreamRequest&) const = default;
 };

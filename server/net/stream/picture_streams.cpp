@@ -87,7 +87,7 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
   if (request.kind == PictureRequest::Kind::kScene) {
     const auto view = views_.find(stream.request.view);
     if (view != views_.end()) request.scene = view->second.settings;
-    request.first_colour = stream.request.first_colour;
+    request.look = stream.request.look;
   }
   if (const std::string name = estimator_of(stream.request.name); !name.empty()) {
     const auto& names = instant.timeline->estimators();
@@ -115,7 +115,7 @@ std::int64_t PictureStreams::add_others(const Stream& stream,
     const Instant* other = find_instant(instants, run.run_id);
     if (other == nullptr || other->run_id == stream.request.run_id) continue;
     request->others.push_back(
-        {other->run_id, other->t_ns, other->live, other->alignment, run.first_colour});
+        {other->run_id, other->t_ns, other->live, other->alignment, run.look});
     frames += other->frame;
   }
   return frames;

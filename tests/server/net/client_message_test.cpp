@@ -77,8 +77,34 @@ TEST(ClientMessage, ReadsTheOtherRunsOfAScene) {
       R"({"type":"subscribe","pictures":[{"run":"r","name":"scene","first_colour":2,
           "with":[{"run":"q","first_colour":5},{"run":"s"}]}]})");
   ASSERT_EQ(subscribe.pictures.size(), 1U);
-  EXPECT_EQ(subscribe.pictures[0].first_colour, 2U);
-  EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", 5}, {"s", 0}}));
+  EXPECT_EQ(subscribe.pictures[0].look.first_colour, 2U);
+  EXPECT_EQ(subscribe.pictures[0].with, (std::vector<SceneRun>{{"q", {5}}, {"s", {}}}));
+}
+
+TEST(ClientMessage, ReadsTheLookOfTracks) {
+  const auto subscribe = parse_as<SubscribeCommand>(
+      R"({"type":"subscribe","pictures":[{"run":"r","name":"scene","hide":["","a"],
+          "colours":{"":"#000000","b":"#FF8000"},"with":[{"run":"q","hide":["c"]}]}]})");
+  const server::TrackLook& look = subscribe.pictures.at(0).look;
+  EXPECT_EQ(look.hidden, (std::set<std::string>{"", "a"}));
+  EXPECT_EQ(look.truth_rgb(), (server::TrackRgb{0.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(look.rgb_of("b", 3), (server::TrackRgb{1.0F, 128.0F / 255.0F, 0.0F}));
+  EXPECT_EQ(look.rgb_of("c", 1), server::estimator_rgb(1));
+  EXPECT_FALSE(subscribe.pictures[0].with.at(0).look.shows("c"));
+  for (const std::string& wrong : {R"("hide":"a")",
+                                   R"("hide":[1])",
+                                   R"("colours":{"a":"red"})",
+                                   R"("colours":{"a":"#12345"})",
+                                   R"("colours":{"a":"#12345g"})",
+                                   R"("colours":{"a":"#+12345"})",
+                                   R"("colours":{"a":123456})"}) {
+    const std::string text =
+        R"({"type":"subscribe","pictures":[{"run":"r","name":"scene",)" + wrong + "}]}";
+    EXPECT_FALSE(parse_client_message(text).status.ok()) << wrong;
+  }
+  std::string many = R"({"type":"subscribe","pictures":[{"run":"r","name":"scene","hide":[)";
+  for (int i = 0; i < 65; ++i) many += (i > 0 ? ",\"e" : "\"e") + std::to_string(i) + "\"";
+  EXPECT_FALSE(parse_client_message(many + "]}]}").status.ok());
 }
 
 TEST(ClientMessage, ReadsTheContentsAndThePlaceOfAView) {
@@ -128,6 +154,7 @@ TEST(ClientMessage, RefusesWrongOtherRuns) {
   };
   EXPECT_THAT(error_of(R"("name":"camera","with":[{"run":"q"}])"), HasSubstr("only to the stream"));
   EXPECT_THAT(error_of(R"("name":"camera","first_colour":1)"), HasSubstr("only to the stream"));
+  EXPECT_THAT(error_of(R"("name":"depth","hide":["a"])"), HasSubstr("only to the stream"));
   EXPECT_THAT(error_of(R"("name":"scene","first_colour":-1)"), HasSubstr("first_colour"));
   EXPECT_THAT(error_of(R"("name":"scene","with":[7])"), HasSubstr("with.0"));
   EXPECT_THAT(error_of(R"("name":"scene","with":[{"first_colour":1}])"), HasSubstr("run"));

@@ -111,7 +111,7 @@ TEST_F(ViewerTest, ShowsScenesByTheAlignmentThatItReports) {
 TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
   timeline_->append_frame(frame_row(1, 1'000'000'000));
   timeline_->append_frame(frame_row(2, 2'000'000'000));
-  const json other = {{"run", "q"}, {"first_colour", 4}};
+  const json other = {{"run", "q"}, {"first_colour", 4}, {"hide", {"", "p"}}};
   const json absent = {{"run", "absent"}};
   const json scene = {
       {"run", "r"}, {"name", "scene"}, {"first_colour", 2}, {"with", {other, absent}}};
@@ -124,11 +124,14 @@ TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
   const server::PictureRequest& request = port_.drawn.back().second;
   EXPECT_EQ(request.run_id, "r");
   EXPECT_EQ(request.t_ns, 2'000'000'000);
-  EXPECT_EQ(request.first_colour, 2U);
+  EXPECT_EQ(request.look.first_colour, 2U);
   ASSERT_EQ(request.others.size(), 1U);
   EXPECT_EQ(request.others[0].run_id, "q");
   EXPECT_EQ(request.others[0].t_ns, 1'000'000'000);
-  EXPECT_EQ(request.others[0].first_colour, 4U);
+  EXPECT_EQ(request.others[0].look.first_colour, 4U);
+  EXPECT_FALSE(request.others[0].look.shows(""));
+  EXPECT_FALSE(request.others[0].look.shows("p"));
+  EXPECT_TRUE(request.others[0].look.shows("q"));
 }
 
 /// A run that has ended, of 100 frames.

@@ -135,7 +135,7 @@ TEST(RowAlignment, MovesTheRibbons) {
   ViewRibbons ribbons(timeline, "sim3");
   ribbons.refresh();
   const Pose now = timeline->frames(59, 1).front().T_world_body;
-  const auto all = ribbons.until(timeline->frames(59, 1).front().t_ns, now, 0);
+  const auto all = ribbons.until(timeline->frames(59, 1).front().t_ns, now, {});
   ASSERT_EQ(all.size(), 2U);  // the truth, and the map that was scored
   const Pose& first = all[1].T_world_body.front();
   EXPECT_LT((first.translation - timeline->frames(20, 1).front().T_world_body.translation).norm(),

@@ -32,7 +32,7 @@ TEST(ViewRibbons, EndsTheTruthAtTheInstantAsked) {
   for (int i = 0; i < 100; ++i) timeline->append_frame(frame_row(i));
   ViewRibbons ribbons(timeline);
   ribbons.refresh();
-  const auto cut = ribbons.until(4000, at(40.0), 0);
+  const auto cut = ribbons.until(4000, at(40.0), {});
   ASSERT_EQ(cut.size(), 1U);
   EXPECT_EQ(cut[0].T_world_body.back().translation.y(), 40.0);
   EXPECT_EQ(cut[0].T_world_body.front().translation.y(), 0.0);
@@ -55,8 +55,8 @@ TEST(ViewRibbons, GrowsWithTheRunAsIfReadAtOnce) {
   }
   ViewRibbons whole(timeline);
   whole.refresh();
-  const auto a = growing.until(3000, at(30.0), 0);
-  const auto b = whole.until(3000, at(30.0), 0);
+  const auto a = growing.until(3000, at(30.0), {});
+  const auto b = whole.until(3000, at(30.0), {});
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].T_world_body.size(), b[i].T_world_body.size());
@@ -72,7 +72,7 @@ TEST(ViewRibbons, BreaksAnEstimateWhereItIsLostOrStartsAgain) {
   }
   ViewRibbons ribbons(timeline);
   ribbons.refresh();
-  const auto all = ribbons.until(9000, at(89.0), 0);
+  const auto all = ribbons.until(9000, at(89.0), {});
   ASSERT_EQ(all.size(), 4U);  // the truth; until the loss, after it, and after the reset
   EXPECT_EQ(all[1].rgb, estimator_rgb(0));
   EXPECT_LT(all[1].T_world_body.back().translation.y(), 30.0);

@@ -99,7 +99,7 @@ TEST_F(ViewSceneContentTest, HasTheTracksOfOtherRunsAtTheirOwnTimes) {
   const std::string other = fly(*runs);
   const renderer::SceneContent alone = drawn(*runs, scene_of(id, 9));
   PictureRequest both = scene_of(id, 9);
-  both.others = {{other, 400'000'000, false, "init_scale", 3}, {"absent", 0, false, "sim3", 9}};
+  both.others = {{other, 400'000'000, false, "init_scale", {3}}, {"absent", 0, false, "sim3", {9}}};
   const renderer::SceneContent shared = drawn(*runs, both);
   ASSERT_EQ(alone.aircraft.size(), 2U);
   ASSERT_EQ(shared.aircraft.size(), 4U);
@@ -117,6 +117,41 @@ TEST_F(ViewSceneContentTest, HasTheTracksOfOtherRunsAtTheirOwnTimes) {
       1.0);
   EXPECT_EQ(shared.ribbons.size(), 2 * alone.ribbons.size());
   EXPECT_EQ(shared.points.size(), alone.points.size()) << "of the main run only";
+}
+
+TEST_F(ViewSceneContentTest, LeavesOutHiddenTracksAndTakesTheirColours) {
+  const auto runs = watched_runs();
+  const std::string id = fly(*runs);
+  const std::string other = fly(*runs);
+  constexpr TrackRgb kGrey{0.5F, 0.5F, 0.5F};
+  PictureRequest request = scene_of(id, 9);
+  request.scene.show.errors = true;
+  request.scene.show.error_history = true;
+  const renderer::SceneContent all = drawn(*runs, request);
+  ASSERT_EQ(all.aircraft.size(), 2U);
+  ASSERT_FALSE(all.lines.empty());
+  ASSERT_FALSE(all.points.empty());
+  request.look.colours = {{"", kGrey}, {"p", kTruthRgb}};
+  const renderer::SceneContent coloured = drawn(*runs, request);
+  EXPECT_EQ(coloured.aircraft.at(0).rgb, kGrey);
+  EXPECT_EQ(coloured.aircraft.at(1).rgb, kTruthRgb);
+  EXPECT_EQ(coloured.ribbons.at(0).rgb, kGrey);
+  EXPECT_EQ(coloured.ribbons.at(1).rgb, kTruthRgb);
+  for (const auto& line : coloured.lines) EXPECT_EQ(line.rgb, kTruthRgb);
+  request.look.hidden = {"p"};
+  const renderer::SceneContent truth = drawn(*runs, request);
+  ASSERT_EQ(truth.aircraft.size(), 1U);
+  EXPECT_EQ(truth.aircraft[0].rgb, kGrey);
+  EXPECT_EQ(truth.ribbons.size(), 1U);
+  EXPECT_TRUE(truth.lines.empty());
+  EXPECT_TRUE(truth.points.empty());
+  request.look.hidden = {"", "unknown"};
+  request.others = {{other, 400'000'000, false, "init_scale", {3, {"p"}}}};
+  const renderer::SceneContent rest = drawn(*runs, request);
+  ASSERT_EQ(rest.aircraft.size(), 2U);
+  EXPECT_EQ(rest.aircraft[0].rgb, kTruthRgb) << "the estimate in its own colour";
+  EXPECT_EQ(rest.aircraft[1].rgb, kTruthRgb) << "the other run's truth";
+  EXPECT_EQ(rest.ribbons.size(), 2U);
 }
 
 TEST_F(ViewSceneContentTest, HasTheMapPointsRecordedLast) {

@@ -57,8 +57,20 @@ export interface PictureStream {
   encoding?: 'jpeg' | 'vp8';
   /** Of a scene: index of the first estimator's colour. */
   first_colour?: number;
+  /** Of a scene: tracks that it leaves out; '' = the truth. */
+  hide?: string[];
+  /** Of a scene: colours in place of the usual ones, by track, as #rrggbb. */
+  colours?: Record<string, string>;
   /** Of a scene: other runs whose tracks it shows. */
-  with?: { run: string; first_colour: number }[];
+  with?: SceneTracks[];
+}
+
+/** The tracks of a run in a scene. */
+export interface SceneTracks {
+  run: string;
+  first_colour: number;
+  hide?: string[];
+  colours?: Record<string, string>;
 }
 
 /** Number of rows that the client already has, by data stream. */

@@ -192,5 +192,35 @@ TEST_F(RunStartsTest, ServesTheDashboardBesideTheInterface) {
   EXPECT_EQ(ask(server_.port(), "GET", "/api/v1/runs/..%2Fscenarios/manifest").status, 404);
 }
 
+TEST(RunStarts, ParametersOfNativeEstimatorsAreCheckedFirst) {
+  TestServer server;
+  const Answer tiny = ask(server.port(), "GET", "/api/v1/scenarios/tiny");
+  json document = tiny.json();
+  document["estimators"] = {
+      {{"name", "f"}, {"type", "feature"}, {"parameters", {{"features", 5}}}},
+      {{"name", "p"}, {"type", "perfect"}, {"parameters", {{"drift", 0.5}}}},
+      {{"name", "q"}, {"type", "perfect"}, {"parameters", {{"scal", 2}}}},
+      {{"name", "h"}, {"type", "baseline_hold"}, {"parameters", {{"window", 2}}}},
+      {{"name", "o"}, {"type", "baseline_homography"}, {"parameters", {{"features", "many"}}}}};
+  const auto fields = [](const json& faults) {
+    std::vector<std::string> names;
+    for (const json& fault : faults) names.push_back(fault.at("field"));
+    return names;
+  };
+  const std::vector<std::string> at_fault{"estimators.0.parameters.features",
+                                          "estimators.2.parameters.scal",
+                                          "estimators.3.parameters.window",
+                                          "estimators.4.parameters.features"};
+  const Answer checked = ask(
+      server.port(), "POST", "/api/v1/scenario-check", json{{"document", document}}.dump(), kJson);
+  EXPECT_EQ(checked.json().at("valid"), false) << checked.body;
+  EXPECT_EQ(fields(checked.json().at("faults")), at_fault) << checked.body;
+  const Answer started =
+      ask(server.port(), "POST", "/api/v1/runs", json{{"document", document}}.dump(), kJson);
+  EXPECT_EQ(started.status, 400);
+  EXPECT_EQ(fields(started.json().at("error").at("faults")), at_fault) << started.body;
+  EXPECT_TRUE(ask(server.port(), "GET", "/api/v1/runs").json().at("runs").empty());
+}
+
 }  // namespace
 }  // namespace overfly::testing

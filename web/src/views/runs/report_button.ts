@@ -16,6 +16,7 @@ export class ReportButton implements View {
   readonly root = h('button', {
     class: 'icon-button report-button',
     'data-role': 'report',
+    'aria-label': 'Report',
     hidden: true,
   });
   private readonly label = h('span');

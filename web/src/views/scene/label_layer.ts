@@ -6,7 +6,7 @@ import { placeLabels } from '../../store/scene/scene_labels';
 import type { State } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
 import type { Picture } from '../../store/watched_run';
-import { estimateColour, kTruthColour } from '../colours';
+import { trackColour } from '../colours';
 import { h, rebuild } from '../dom';
 
 export interface LabelText {
@@ -25,8 +25,7 @@ export function labelText(state: State, label: SceneLabel): LabelText | null {
   if (track === undefined || !track.shown) return null;
   const error_m = label.error_m ?? 0;
   const error = error_m < kLeastError_m ? '' : ` ${formatNumber(error_m, error_m < 10 ? 2 : 0)} m`;
-  const colour = track.name === '' ? kTruthColour : estimateColour(track.colour);
-  return { text: `${track.label}${error}`, colour };
+  return { text: `${track.label}${error}`, colour: trackColour(track) };
 }
 
 interface PlacedLabel extends LabelText {

@@ -3,8 +3,8 @@ import { formatNumber } from '../../store/format';
 import { kNoRate } from '../../store/pictures/picture_rates';
 import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
-import { tracksOf } from '../../store/tracks';
-import { estimateColour, kTruthColour } from '../colours';
+import { shownTracks } from '../../store/tracks';
+import { trackColour } from '../colours';
 import { h, perFrame, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
@@ -72,13 +72,11 @@ export class ScenePanel implements View {
     const place = [eye.x_m, eye.y_m, eye.z_m].map((value) => formatNumber(value, 0)).join(' ');
     const far = mode === 'free' ? ` · ${place} m` : ` · ${formatNumber(distance_m, 0)} m`;
     setText(this.readout, angles + (mode === 'onboard' ? '' : far));
-    const tracks = tracksOf(state);
+    const tracks = shownTracks(state);
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
-    const key = JSON.stringify([state.runId, alignment, tracks.map(({ label }) => label)]);
-    rebuild(this.legend, key, () => [
-      ...tracks.map(({ name, label, colour }) =>
-        legendEntry(label, name === '' ? kTruthColour : estimateColour(colour)),
-      ),
+    const entries = tracks.map((track) => [track.label, trackColour(track)] as const);
+    rebuild(this.legend, JSON.stringify([state.runId, alignment, entries]), () => [
+      ...entries.map(([label, colour]) => legendEntry(label, colour)),
       ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
     ]);
   }

@@ -19,10 +19,27 @@ describe('the picture of the 3D view', () => {
     ];
     expect(others()).toEqual([r2, r3]);
     for (const name of ['', 'a']) session.showTrack('r2', name, false);
-    expect(others(), 'b is shown').toEqual([r2, r3]);
+    expect(others(), 'b is shown').toEqual([{ ...r2, hide: ['', 'a'] }, r3]);
     session.showTrack('r2', 'b', false);
     expect(others()).toEqual([r3]);
     for (const name of ['', 'feature']) session.showTrack('r1', name, false);
-    expect(sceneWish(store.state)[0]?.run, 'the main run stays').toBe('r1');
+    const [own] = sceneWish(store.state);
+    expect([own?.run, own?.hide], 'the main run stays, without its tracks').toEqual([
+      'r1',
+      ['', 'feature'],
+    ]);
+  });
+
+  it('has the colours that the viewer chose', () => {
+    const viewing = new Viewing();
+    viewing.watch();
+    viewing.store.state.colours = new Map([
+      ['r1/', '102030'],
+      ['r1/feature', '6'],
+    ]);
+    expect(sceneWish(viewing.store.state)[0]?.colours).toEqual({
+      '': '#102030',
+      feature: '#e678bf',
+    });
   });
 });
