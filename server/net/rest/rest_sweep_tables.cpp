@@ -26,7 +26,7 @@ struct TextKind {
   const char* extension;
 };
 
-TextKind kind_of(TableFormat format) {
+TextKind text_kind_of(TableFormat format) {
   switch (format) {
     case TableFormat::kMarkdown:
       return {"text/markdown; charset=utf-8", ".md"};
@@ -101,7 +101,7 @@ Result<HttpResponse> tables_of(const SweepRoutes& routes,
   scores->problems.clear();  // they name folders of this machine
   const auto tables = experiments::sweep_tables(std::move(*scores), query.options);
   if (!tables) return tables.error();
-  const TextKind kind = kind_of(query.format);
+  const TextKind kind = text_kind_of(query.format);
   HttpResponse response =
       page_response(experiments::text_from(*tables, query.options, query.format));
   response.content_type = kind.content_type;

@@ -209,7 +209,8 @@ TEST(Run, BadEstimatorParameterIsNamed) {
       small_scenario({R"(estimators=[{"name":"p","type":"perfect","parameters":{"scal":1}}])"}),
       options_for(folder.path() / "r"));
   ASSERT_FALSE(run.ok());
-  EXPECT_THAT(run.error().message, HasSubstr("estimator \"p\": parameters.scal: must be drift, scale or scene_depth_m"));
+  EXPECT_THAT(run.error().message,
+              HasSubstr("estimator \"p\": parameters.scal: must be drift, scale or scene_depth_m"));
 }
 
 /// Answers twice, then ends.
