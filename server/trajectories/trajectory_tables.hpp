@@ -13,8 +13,8 @@ namespace overfly::server {
 /// {"positions", "attitudes"}; at most `points` rows each.
 [[nodiscard]] nlohmann::json pose_tables(const ServedTrajectory& trajectory, std::size_t points);
 
-/// {"positions", "attitudes", "axis_errors", "errors", "scale"} of the aligned estimate at the times of its
-/// matches; at most `points` rows each.
+/// {"positions", "attitudes", "axis_errors", "errors", "scale"} of the aligned estimate at the
+/// times of its matches; at most `points` rows each.
 /// @param T_body_pose  as ServedTrajectory, of the estimate
 /// @pre the score has the alignment
 [[nodiscard]] nlohmann::json error_tables(const FileScore& score,
