@@ -192,7 +192,10 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
     await page.locator('[data-score-group=drift]').click();
     await page.locator('.score-page [data-axis=translation_percent] canvas').waitFor();
     const units = await page.locator('.score-page .plot-title .unit').allInnerTexts();
-    assert.deepEqual(units, ['% over sub-path [m]', 'deg/100 m over sub-path [m]']);
+    assert.deepEqual(units, [
+      '%, over the length of sub-paths',
+      'deg / 100 m, over the length of sub-paths',
+    ]);
     await dashboard.screenshot('score_files_drift_1600x900');
     const [download] = await Promise.all([
       page.waitForEvent('download'),
@@ -201,16 +204,16 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
     const [head, ...lines] = readFileSync(await download.path(), 'utf8')
       .trimEnd()
       .split('\n');
-    assert.equal(head, 'plot,unit,curve,length_m,value');
+    assert.equal(head, 'figure,estimate,length_m,value,sub_paths');
     const [{ alignments }] = evaluate('truth.tum', 'kitti/00.txt');
-    const saved = lines.filter((line) => line.startsWith('translation_percent,%,uploads/00.tum,'));
+    const saved = lines.filter((line) => line.startsWith('translation_percent,uploads/00.tum,'));
     assert.deepEqual(
-      saved.map((line) => Number(line.split(',')[3])),
+      saved.map((line) => Number(line.split(',')[2])),
       alignments.sim3.relative.map(({ length_m }) => length_m),
     );
     saved.forEach((line, i) => {
       const { translation_percent: printed } = alignments.sim3.relative[i];
-      assert.ok(Math.abs(Number(line.split(',')[4]) - printed) <= 1e-9 * printed, line);
+      assert.ok(Math.abs(Number(line.split(',')[3]) - printed) <= 1e-9 * printed, line);
     });
     await page.locator('[data-score-group=errors]').click();
   });

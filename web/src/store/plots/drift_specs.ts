@@ -46,6 +46,18 @@ const kFigures = [
   },
 ] as const;
 
+/** The relative errors of an estimate, by ascending length. */
+export interface ScoredDrift {
+  name: string;
+  hue: CurveHue;
+  relative: readonly {
+    length_m: number;
+    pairs: number;
+    translation_percent: number;
+    rotation_deg_per_100m: number;
+  }[];
+}
+
 /** One curve for each shown estimate that has figures under the shown alignment. */
 export function driftSpecs(state: Pick<State, 'watched' | 'colours'>): DriftSpec[] {
   const scored = drawnTracks(state).flatMap((track) => {
@@ -54,6 +66,10 @@ export function driftSpecs(state: Pick<State, 'watched' | 'colours'>): DriftSpec
     const relative = [...(errors?.relative ?? [])].sort((a, b) => a.length_m - b.length_m);
     return relative.length > 0 ? [{ name: label, hue: hueOf(track), relative }] : [];
   });
+  return driftSpecsOf(scored);
+}
+
+export function driftSpecsOf(scored: readonly ScoredDrift[]): DriftSpec[] {
   if (scored.length === 0) return [];
   return kFigures.map((figure) => ({
     ...figure,

@@ -2,19 +2,14 @@
 import { csvLine } from '../csv';
 import { decimated } from './curve';
 import { ticks, tickText } from './path_frame';
-import type { CurveHue, PlotBase, PlotSpec } from './plot_specs';
-import { kTimeBase } from './plot_specs';
+import type { CurveHue, PlotSpec } from './plot_specs';
 import { paddedRange } from './plot_range';
 import { escaped, svgFile } from './svg_pen';
 import type { Span } from '../time_window';
 
-/**
- * All values of all curves: one line each. Times are those of the clock.
- * @param specs  over the same base
- */
+/** All values of all curves: one line each. Times are those of the clock. */
 export function plotsCsv(specs: readonly PlotSpec[]): string {
-  const base = specs[0]?.over ?? kTimeBase;
-  const lines = [csvLine(['plot', 'unit', 'curve', base.column, 'value'])];
+  const lines = [csvLine(['plot', 'unit', 'curve', 't_s', 'value'])];
   for (const { key, unit, curves } of specs) {
     for (const { name, curve } of curves) {
       const now = curve();
@@ -101,7 +96,7 @@ function onePlot(spec: PlotSpec, span_s: Span, style: SvgStyle): string {
   });
   const area = { x, y, low, high, plotWidth, plotHeight };
   const clip = `<svg x="${kLeft_px}" y="${kTop_px}" width="${plotWidth}" height="${plotHeight}" viewBox="${kLeft_px} ${kTop_px} ${plotWidth} ${plotHeight}">${paths.join('')}</svg>`;
-  return titles(spec, style) + axes(span_s, area, style, spec.over ?? kTimeBase) + clip;
+  return titles(spec, style) + axes(span_s, area, style) + clip;
 }
 
 interface Area {
@@ -134,7 +129,7 @@ export function svgTitles(
   );
 }
 
-function axes(span_s: Span, area: Area, style: SvgStyle, base: PlotBase): string {
+function axes(span_s: Span, area: Area, style: SvgStyle): string {
   const { x, y, low, high, plotWidth, plotHeight } = area;
   const bottom = kTop_px + plotHeight;
   const times = ticks(span_s[0], span_s[1], plotWidth / kTickSpace_px);
@@ -155,6 +150,6 @@ function axes(span_s: Span, area: Area, style: SvgStyle, base: PlotBase): string
         line(kLeft_px, y(value), kLeft_px + plotWidth, y(value)) +
         text(kLeft_px - 5, y(value) + 4, 'end', tickText(value, step(values))),
     ),
-    text(kLeft_px + plotWidth, bottom + 28, 'end', base.label),
+    text(kLeft_px + plotWidth, bottom + 28, 'end', 'time [s]'),
   ].join('');
 }

@@ -37,16 +37,6 @@ export interface CurveSpec {
   atClock?: () => number | null | undefined;
 }
 
-/** A horizontal axis. */
-export interface PlotBase {
-  /** With its unit. */
-  label: string;
-  /** Name of its column in CSV files. */
-  column: string;
-}
-
-export const kTimeBase: PlotBase = { label: 'time [s]', column: 't_s' };
-
 export interface PlotSpec {
   key: string;
   label: string;
@@ -56,8 +46,6 @@ export interface PlotSpec {
   digits: number;
   /** Minimum span of the axis, so that noise does not fill the plot. */
   least: number;
-  /** What the curves are drawn over, instead of the time. */
-  over?: PlotBase;
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   curves: CurveSpec[];

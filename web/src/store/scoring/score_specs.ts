@@ -5,7 +5,9 @@ import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { Curve } from '../plots/curve';
 import type { Path, PathMark } from '../plots/path_frame';
-import type { CurveHue, CurveSpec, PlotBase, PlotSpec } from '../plots/plot_specs';
+import type { DriftSpec } from '../plots/drift_specs';
+import { driftSpecsOf } from '../plots/drift_specs';
+import type { CurveHue, CurveSpec, PlotSpec } from '../plots/plot_specs';
 import { kAxisLabels } from '../plots/plot_specs';
 import { csvLine } from '../csv';
 import { lastAtOrBefore } from '../table';
@@ -21,32 +23,12 @@ const kErrors = [
   { table: 'scale', column: 'scale_percent', label: 'Scale error over the last 100 m', unit: '%' },
 ] as const;
 
-const kDrifts = [
-  {
-    key: 'translation_percent',
-    label: 'Drift of the position',
-    unit: '%',
-    hint: 'Root mean square of the translation error over all sub-paths of a length, each aligned at its beginning, in % of the length',
-  },
-  {
-    key: 'rotation_deg_per_100m',
-    label: 'Drift of the rotation',
-    unit: 'deg/100 m',
-    hint: 'Root mean square of the rotation error over all sub-paths of a length, for every 100 m',
-  },
-] as const;
-const kLengthBase: PlotBase = { label: 'sub-path [m]', column: 'length_m' };
-
-/** So that the number of the longest is not cut off. */
-const kLengthMargin = 1.05;
-
 export type ScoreGroup = 'pose' | 'path' | 'errors' | 'drift';
 
 export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGroup): PlotSpec[] {
   const { truth, estimates } = evaluation;
   const begin_s = truth.first_s;
-  if (group === 'path') return [];
-  if (group === 'drift') return driftSpecs(evaluation, mode);
+  if (group === 'path' || group === 'drift') return [];
   const own = estimates.flatMap(({ name, series }, colour) => {
     const tables = series?.[mode];
     const hue: CurveHue = { kind: 'estimate', colour };
@@ -81,22 +63,13 @@ export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGro
 }
 
 /** Errors by the length of the sub-path (relative pose error, as of KITTI). */
-function driftSpecs({ estimates }: Evaluation, mode: string): PlotSpec[] {
-  const own = estimates.flatMap(({ name, alignments }, colour) => {
+export function scoreDrifts({ estimates }: Evaluation, mode: string): DriftSpec[] {
+  const scored = estimates.flatMap(({ name, alignments }, colour) => {
     const relative = alignments?.[mode]?.relative ?? [];
     const hue: CurveHue = { kind: 'estimate', colour };
     return relative.length === 0 ? [] : [{ name: shortName(name), relative, hue }];
   });
-  if (own.length === 0) return [];
-  return kDrifts.map(({ key, label, unit, hint }) => {
-    const curves = own.map(({ name, relative, hue }) => {
-      const lengths_m = relative.map(({ length_m }) => length_m);
-      const values = relative.map((one) => one[key]);
-      const curve = curveOf({ t_s: lengths_m, [key]: values }, key, 0);
-      return { name, short: '', hue, curve: () => curve };
-    });
-    return { key, label, unit, hint, digits: 3, least: 0.01, over: kLengthBase, curves };
-  });
+  return driftSpecsOf(scored);
 }
 
 /** The tracks by an alignment; times are those of the page's clock. */
@@ -139,15 +112,6 @@ export function pathMarks(paths: readonly Path[], t_s: number): PathMark[] {
     const row = lastAtOrBefore(t, (t_s - t_offset_s) / t_scale_s);
     return row < 0 ? [] : [{ hue, x: x[row] ?? NaN, y: y[row] ?? NaN }];
   });
-}
-
-/** What the plots of a group are drawn over. */
-export function groupSpan(evaluation: Evaluation, specs: readonly PlotSpec[]): Span {
-  if (specs[0]?.over === undefined) return scoreSpan(evaluation);
-  const lengths_m = specs.flatMap(({ curves }) =>
-    curves.flatMap(({ curve }) => Array.from(curve()?.t ?? [])),
-  );
-  return [0, kLengthMargin * Math.max(...lengths_m)];
 }
 
 /** From the first to the last pose of the truth. */

@@ -43,10 +43,6 @@ function plotWidth_px(plot: uPlot): number {
   return plot.bbox.width / uPlot.pxRatio;
 }
 
-function unitText({ unit, over }: PlotSpec): string {
-  return over === undefined ? unit : `${unit} over ${over.label}`;
-}
-
 /** uPlot draws the axes for two times without values. */
 function axesData(span_s: Span): uPlot.AlignedData {
   return [[...span_s], [null, null]];
@@ -99,7 +95,7 @@ export class Plot {
       'div',
       { class: `plot-title${crowding(curves)}`, title: spec.hint },
       h('b', {}, spec.label),
-      h('span', { class: 'unit' }, unitText(spec)),
+      h('span', { class: 'unit' }, spec.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
     );
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);

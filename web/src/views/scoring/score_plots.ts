@@ -1,18 +1,22 @@
 // The plots of scored trajectories, in groups of which one is shown.
 import type { Evaluation } from '../../protocol/score_types';
 import type { Path } from '../../store/plots/path_frame';
+import type { DriftSpec } from '../../store/plots/drift_specs';
+import { driftCsv } from '../../store/plots/drift_specs';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import type { ScoreGroup } from '../../store/scoring/score_specs';
 import {
-  groupSpan,
   pathMarks,
   scorePaths,
   scorePathsCsv,
+  scoreDrifts,
+  scoreSpan,
   scoreSpecs,
 } from '../../store/scoring/score_specs';
 import type { Span } from '../../store/time_window';
 import { panned, zoomed } from '../../store/time_window';
 import { h, rebuild } from '../dom';
+import { DriftPlot } from '../plots/drift_plot';
 import type { PathAxes } from '../plots/path_plot';
 import { besides, kPathAxes, PathPlot } from '../plots/path_plot';
 import type { PlotActions } from '../plots/plot';
@@ -34,6 +38,7 @@ export class ScorePlots {
   readonly files: HTMLSelectElement;
   private group: ScoreGroup = 'errors';
   private plots: Plot[] = [];
+  private drifts: DriftPlot[] = [];
   private readonly paths: readonly { plot: PathPlot; axes: PathAxes; tracks: Path[] }[];
   private drawn: { series: Evaluation | null; group: ScoreGroup } = { series: null, group: 'pose' };
   /** null = everything. */
@@ -69,11 +74,12 @@ export class ScorePlots {
   repaint(): void {
     for (const plot of this.plots) plot.repaint();
     for (const { plot } of this.paths) plot.repaint();
+    for (const drift of this.drifts) drift.repaint();
   }
 
   /** Why there is no plot although there are scores; '' if there is. */
   emptyText(): string {
-    if (this.group !== 'drift' || this.specs().length > 0) return '';
+    if (this.group !== 'drift' || this.driftSpecs().length > 0) return '';
     return 'No trajectory has a scored path of 100 m.';
   }
 
@@ -88,9 +94,14 @@ export class ScorePlots {
     return series === null ? [] : scoreSpecs(series, mode, this.group);
   }
 
+  private driftSpecs(): DriftSpec[] {
+    const { series, mode } = this.scored();
+    return series === null ? [] : scoreDrifts(series, mode);
+  }
+
   private whole(): Span {
     const { series } = this.scored();
-    return series === null ? [0, 1] : groupSpan(series, this.specs());
+    return series === null ? [0, 1] : scoreSpan(series);
   }
 
   private span(): Span {
@@ -106,6 +117,14 @@ export class ScorePlots {
         name,
         csv: () => scorePathsCsv(series, mode),
         svg: () => besides(this.paths.map(({ plot }) => plot.drawing())),
+      };
+    }
+    if (this.group === 'drift') {
+      const drifts = this.driftSpecs();
+      return {
+        name,
+        csv: () => driftCsv(drifts),
+        svg: () => besides(this.drifts.map((drift) => drift.drawing())),
       };
     }
     const specs = this.specs();
@@ -139,10 +158,19 @@ export class ScorePlots {
         new Plot(spec, actions, { timeLabels: i >= specs.length - columns, leads: i === 0 }),
     );
     if (this.group === 'path') this.takePaths();
+    this.drifts = [];
+    if (this.group === 'drift') {
+      this.drifts = this.driftSpecs().map((spec) => {
+        const drift = new DriftPlot(spec);
+        drift.draw(spec);
+        return drift;
+      });
+    }
     this.root.style.setProperty('--columns', String(columns));
     this.root.dataset['group'] = this.group;
     this.root.dataset['alignment'] = this.scored().mode;
-    const parts = this.group === 'path' ? this.paths.map(({ plot }) => plot) : this.plots;
+    const paths = this.group === 'path' ? this.paths.map(({ plot }) => plot) : [];
+    const parts = [...paths, ...this.drifts, ...this.plots];
     this.root.replaceChildren(...parts.map(({ root }) => root));
   }
 

@@ -37,14 +37,6 @@ describe('plotsCsv', () => {
   });
 });
 
-it('names what the curves are drawn over', () => {
-  const over = { label: 'sub-path [m]', column: 'length_m' };
-  expect(plotsCsv([{ ...spec, over }])).toMatch(/^plot,unit,curve,length_m,value\n/);
-  const svg = plotsSvg([{ ...spec, over }], [2, 4], 1, style);
-  expect(svg).toContain('sub-path [m]');
-  expect(svg).not.toContain('time [s]');
-});
-
 describe('plotsSvg', () => {
   it('draws curves with axes and units, and breaks them', () => {
     const svg = plotsSvg([spec, spec], [2, 4], 3, style);

@@ -7,7 +7,7 @@ import {
   scoreRows,
 } from '../../../src/store/scoring/score_rows';
 import {
-  groupSpan,
+  scoreDrifts,
   pathMarks,
   scorePaths,
   scoreSpan,
@@ -134,16 +134,15 @@ describe('scoreSpecs', () => {
       { length_m: 200, pairs: 4, translation_percent: 1, rotation_deg_per_100m: 0.1 },
     ];
     const estimates = [{ name: 'e', ...first, alignments: { sim3: { relative } } }];
-    const specs = scoreSpecs({ ...evaluation, estimates }, 'sim3', 'drift');
-    expect(specs.map(({ unit, over }) => [unit, over?.label])).toEqual([
-      ['%', 'sub-path [m]'],
-      ['deg/100 m', 'sub-path [m]'],
-    ]);
-    const curve = specs[1]?.curves[0]?.curve();
-    expect([...(curve?.t as Float64Array)]).toEqual([100, 200]);
-    expect([...(curve?.values as Float64Array)]).toEqual([0.5, 0.1]);
-    expect(groupSpan(evaluation, specs)).toEqual([0, 210]);
-    expect(groupSpan(evaluation, scoreSpecs(evaluation, 'sim3', 'errors'))).toEqual([0, 1]);
+    const specs = scoreDrifts({ ...evaluation, estimates }, 'sim3');
+    expect(specs.map(({ unit }) => unit)).toEqual(['%', 'deg / 100 m']);
+    expect(specs[1]?.curves[0]).toMatchObject({
+      name: 'd/e.tum',
+      lengths_m: [100, 200],
+      values: [0.5, 0.1],
+      pairs: [9, 4],
+    });
+    expect(scoreDrifts(evaluation, 'sim3')).toEqual([]);
     expect(scoreSpecs(evaluation, 'sim3', 'drift')).toEqual([]);
   });
 });
