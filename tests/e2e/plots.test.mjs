@@ -90,7 +90,7 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
 
   step('zooms with the wheel and moves with Shift', async () => {
     assert.equal(await part(), null);
-    assert.ok(await whole().isDisabled());
+    assert.ok(await whole().isHidden());
     const { x, y, width, height } = await plotBox('x_m');
     const middle = [x + width / 2, y + height / 2];
     await page.mouse.move(...middle);
@@ -150,11 +150,11 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     const nearer = await moved(() => page.keyboard.press('+'));
     assert.ok(nearer[1] < later[1]);
     assert.equal((await dashboard.playback()).frame, frame, 'the keys do not step');
-    assert.ok(await whole().isEnabled());
+    assert.ok(await whole().isVisible());
     await dashboard.screenshot('plots_zoomed');
     await whole().click();
     await dashboard.until(() => document.querySelector('[data-role=plotted]').hidden);
-    assert.ok(await whole().isDisabled());
+    assert.ok(await whole().isHidden());
     await page.keyboard.press('Control+k');
     await page.keyboard.type('Plots: zoom in');
     await page.keyboard.press('Enter');

@@ -155,7 +155,7 @@ export class PlotsPanel implements View {
     this.drawTabs();
     this.scales.draw(state, kByAlignment.includes(this.group));
     const { part_s, shown_s } = this.context.plotTime;
-    this.whole.disabled = part_s === null;
+    this.whole.hidden = part_s === null || this.plots.length === 0;
     for (const plot of this.plots) plot.draw(shown_s);
     this.legend.show(this.shownSpecs);
     if (this.group === 'path') for (const path of this.paths) path.draw(state);
@@ -268,7 +268,6 @@ export class PlotsPanel implements View {
     this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${least_px}px, 1fr))`;
     if (kUntimed.includes(this.group)) this.grid.removeAttribute('style');
     const overTime = specs.length > 0;
-    this.whole.hidden = !overTime;
     setAttribute(this.grid, 'tabindex', overTime ? '0' : null);
     setAttribute(this.grid, 'aria-label', overTime ? kGridLabel : null);
     this.grid.hidden = this.group === 'estimators';
