@@ -33,7 +33,8 @@ class DamagedTiles final : public terrain::TileDecorator {
 
 class ViewRenderersTest : public testing::ManagerTest {
  protected:
-  ViewRenderersTest() {
+  /// A manager with real renderers and a scenario over a small world.
+  std::unique_ptr<RunManager> manager_over_ground() {
     overfly::testing::SyntheticWorldOptions small;
     small.size_m = 400.0;
     const terrain::WorldSpec world = overfly::testing::write_synthetic_world(root(), small);
@@ -44,7 +45,7 @@ class ViewRenderersTest : public testing::ManagerTest {
     overfly::testing::write_text(root() / "scenarios" / "small.json", document.dump());
     RunManagerOptions real = options();
     real.renderer_factory = nullptr;
-    runs_ = std::move(RunManager::create(real).value());
+    return std::move(RunManager::create(real).value());
   }
 
   /// The run's view once its world has been opened.
@@ -67,7 +68,7 @@ class ViewRenderersTest : public testing::ManagerTest {
     return view.tiles->counts().read_ahead;
   }
 
-  std::unique_ptr<RunManager> runs_;
+  std::unique_ptr<RunManager> runs_ = manager_over_ground();
   std::vector<std::shared_ptr<DamagedTiles>> worlds_;  ///< in the order in which they were opened
 
  private:
