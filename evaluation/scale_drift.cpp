@@ -1,6 +1,7 @@
 #include "evaluation/scale_drift.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace overfly::evaluation {
 
@@ -11,9 +12,9 @@ std::optional<double> scale_error_at(std::span<const std::optional<ScalePlace>> 
     const std::optional<ScalePlace>& then = places[at - back];
     if (!then) continue;
     if (then->map_id != now.map_id) return std::nullopt;
-    const double true_m = (now.truth_world_m - then->truth_world_m).norm();
-    if (true_m < kScaleWindow_m) continue;
-    return (now.estimate_world_m - then->estimate_world_m).norm() / true_m - 1.0;
+    const double true_m2 = (now.truth_world_m - then->truth_world_m).squaredNorm();
+    if (true_m2 < kScaleWindow_m * kScaleWindow_m) continue;
+    return (now.estimate_world_m - then->estimate_world_m).norm() / std::sqrt(true_m2) - 1.0;
   }
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/text/number_text.hpp"
 #include "server/experiments/sweep_results.hpp"
 #include "server/scoring/run_metrics_json.hpp"
@@ -97,7 +98,8 @@ std::string xml_text(const std::string& text) {
 Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
                                  const fs::path& baseline,
                                  const std::string& estimator,
-                                 evaluation::AlignmentMode mode) {
+                                 evaluation::AlignmentMode mode,
+                                 const std::atomic<bool>* cancel) {
   const Result<SweepResults> first = SweepResults::read(sweep);
   if (!first) return first.error();
   const Result<SweepResults> second = SweepResults::read(baseline);
@@ -106,6 +108,7 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
   const ResultsByFlight flights = results_by_flight(*first, estimator, paired.failed);
   const ResultsByFlight references = results_by_flight(*second, estimator, paired.failed);
   for (const auto& [flight, result] : flights) {
+    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const auto reference = references.find(flight);
     if (reference == references.end()) continue;
     ++paired.pairs;
@@ -114,11 +117,6 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
     if (!status) return status.error();
   }
   paired.without_pair = flights.size() + references.size() - 2 * paired.pairs;
-  if (paired.pairs == 0) {
-    return Error{ErrorCode::kNotFound,
-                 sweep.string() + " and " + baseline.string() +
-                     ": no flight was completed in both (same cell, repeat, seed and estimator)"};
-  }
   return paired;
 }
 

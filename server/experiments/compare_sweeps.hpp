@@ -1,6 +1,7 @@
 // Two sweeps flight by flight: the flights that both have, and conditions on them.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -24,11 +25,18 @@ struct PairedSweeps {
 /// Errors of positions and rotations are those of pairs with the outcome COMPLETED in both;
 /// coverage and resets are those of all flights.
 /// @param estimator  only its flights; all if empty
-/// Errors: as SweepResults::read; as read_run_metrics; kNotFound if no flight has a pair.
+/// @param cancel  may be null
+/// Without any flight that both have, the result has no pairs.
+/// Errors: as SweepResults::read; as read_run_metrics; kCancelled.
 [[nodiscard]] Result<PairedSweeps> pair_sweeps(const std::filesystem::path& sweep,
                                                const std::filesystem::path& baseline,
                                                const std::string& estimator,
-                                               evaluation::AlignmentMode mode);
+                                               evaluation::AlignmentMode mode,
+                                               const std::atomic<bool>* cancel = nullptr);
+
+/// For people, of sweeps without pairs.
+inline constexpr const char* kNoPairs =
+    "no flight was completed in both (same cell, repeat, seed and estimator)";
 
 /// A condition and what became of it.
 struct JudgedCondition {

@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostLibraries = 200;
+constexpr std::size_t kMostNames = 1000;   ///< that one file needs
+constexpr std::size_t kMostFolders = 100;  ///< that one file names for them
 constexpr std::size_t kMostHeaders = 1000;
 constexpr std::size_t kMostEntries = 10'000;
 constexpr std::size_t kMostTextBytes = std::size_t{16} << 20U;
@@ -106,9 +108,10 @@ Needs needs_of(const fs::path& file) {
     if (entry.d_un.d_val >= texts.size()) continue;
     const char* const begin = texts.data() + entry.d_un.d_val;
     const std::string text(begin, ::strnlen(begin, texts.size() - entry.d_un.d_val));
-    if (entry.d_tag == DT_NEEDED) needs.names.push_back(text);
+    if (entry.d_tag == DT_NEEDED && needs.names.size() < kMostNames) needs.names.push_back(text);
     if (entry.d_tag != DT_RUNPATH && entry.d_tag != DT_RPATH) continue;
     for (const std::string& folder : parts_of(text)) {
+      if (needs.folders.size() == kMostFolders) break;
       needs.folders.push_back(without_origin(folder, file));
     }
   }

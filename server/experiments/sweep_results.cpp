@@ -12,6 +12,7 @@
 
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
+#include "server/files/plain_name.hpp"
 #include "server/files/whole_file.hpp"
 
 namespace overfly::server::experiments {
@@ -33,6 +34,13 @@ Json json_of_result(const SweepResult& result) {
           {"duration_s", result.duration_s}};
 }
 
+/// Whether a run's folder is one of the sweep's own: "runs/NAME". The file may have come from
+/// anywhere, and what it names is read.
+bool is_run_of_sweep(const std::string& run) {
+  constexpr std::string_view kFolder = "runs/";
+  return run.starts_with(kFolder) && is_plain_name(run.substr(kFolder.size()));
+}
+
 std::optional<SweepResult> result_from(const Json& line) {
   try {
     SweepResult result;
@@ -42,6 +50,7 @@ std::optional<SweepResult> result_from(const Json& line) {
     result.seed = line.at("seed").get<std::uint64_t>();
     result.estimator = line.at("estimator").get<std::string>();
     result.run = line.at("run").get<std::string>();
+    if (!is_run_of_sweep(result.run)) return std::nullopt;
     result.error = line.at("error").get<std::string>();
     result.duration_s = line.at("duration_s").get<double>();
     const auto status = line.at("status").get<std::string>();

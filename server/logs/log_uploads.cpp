@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/text/shown_path.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/files/take_name.hpp"

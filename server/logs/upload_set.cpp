@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/text/lower_case.hpp"
+#include "core/text/shown_path.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
 
@@ -36,16 +37,6 @@ Status check_upload_set(const std::vector<UploadFile>& files, std::uint64_t max_
     }
   }
   return {};
-}
-
-std::string shown_without(const fs::path& path, const std::string& shown, std::string message) {
-  const std::string own = path.string();
-  for (std::size_t at = message.find(own); at != std::string::npos; at = message.find(own, at)) {
-    const bool inside = message.compare(at + own.size(), 1, "/") == 0;
-    message.replace(at, own.size() + (inside ? 1 : 0), inside ? "" : shown);
-    if (!inside) at += shown.size();
-  }
-  return message;
 }
 
 Status check_uploaded_mapping(const fs::path& folder, const std::vector<UploadFile>& files) {

@@ -29,9 +29,4 @@ inline constexpr std::size_t kMaxUploadFiles = 33;  ///< a mapping and its piece
 [[nodiscard]] Status check_uploaded_mapping(const std::filesystem::path& folder,
                                             const std::vector<UploadFile>& files);
 
-/// A message with `shown` in place of a file's path, and without the path of a folder.
-[[nodiscard]] std::string shown_without(const std::filesystem::path& path,
-                                        const std::string& shown,
-                                        std::string message);
-
 }  // namespace overfly::server

@@ -10,6 +10,7 @@
 
 #include "core/cancel.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/shown_path.hpp"
 #include "server/files/take_name.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
@@ -73,6 +74,11 @@ Error too_many_rows(const fs::path& folder,
               std::to_string(max_rows) + ", the limit of one report: report it in another file"};
 }
 
+/// Why a run was left out, for other people: without the folders of this machine.
+std::string shown_reason(const fs::path& folder, const std::string& message) {
+  return folder.is_absolute() ? shown_without(folder.parent_path(), "", message) : message;
+}
+
 /// Reads what can be read. Errors: as make_report.
 Result<ReportContent> read_content(const std::vector<fs::path>& folders,
                                    const ReportOptions& options) {
@@ -92,7 +98,7 @@ Result<ReportContent> read_content(const std::vector<fs::path>& folders,
       content.runs.push_back(std::move(*run));
       continue;
     }
-    content.left_out.push_back({folder_name(folder), run.error().message});
+    content.left_out.push_back({folder_name(folder), shown_reason(folder, run.error().message)});
     if (!first) first = run.error();
   }
   if (content.runs.empty()) return *first;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/outside/source_policy.hpp"
+#include "core/text/shown_path.hpp"
 #include "evaluation/evaluation.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/logs/upload_set.hpp"

@@ -7,6 +7,7 @@
 
 #include "core/cancel.hpp"
 #include "core/text/lower_case.hpp"
+#include "core/text/shown_path.hpp"
 #include "core/time.hpp"
 #include "server/files/data_files.hpp"
 #include "server/logs/upload_set.hpp"

@@ -56,6 +56,10 @@ int compare(const CompareArguments& arguments) {
   const auto paired =
       experiments::pair_sweeps(arguments.sweep, arguments.baseline, arguments.estimator, mode);
   if (!paired) return report(paired.error());
+  if (paired->pairs == 0) {
+    return report({ErrorCode::kNotFound,
+                   arguments.sweep + " and " + arguments.baseline + ": " + experiments::kNoPairs});
+  }
   std::cout << counted(paired->pairs, "flight") << " in both sweeps; " << paired->without_pair
             << " without a pair and " << paired->failed << " that failed are left out\n";
   std::vector<experiments::JudgedCondition> judged;

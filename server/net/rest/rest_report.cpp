@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cancel.hpp"
+#include "core/text/shown_path.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
 #include "server/report/report.hpp"
@@ -39,37 +40,51 @@ std::string file_part(std::string id) {
   return id;
 }
 
-/// The folders of the runs, with the id of each. Errors: kNotFound; kInvalidArgument for one that
-/// is named twice.
-Result<std::map<fs::path, std::string>> folders_of(const server::RunManager& runs,
-                                                   const std::vector<std::string>& ids) {
-  std::map<fs::path, std::string> folders;
+/// The runs in the order of the query.
+struct ReportedRuns {
+  std::vector<fs::path> folders;
+  std::map<fs::path, std::string> id_of;
+};
+
+/// Errors: kNotFound; kInvalidArgument for a run that is named twice.
+Result<ReportedRuns> reported_runs(const server::RunManager& runs,
+                                   const std::vector<std::string>& ids) {
+  ReportedRuns reported;
   for (const std::string& id : ids) {
     const Result<fs::path> folder = runs.folder(id);
     if (!folder) return folder.error();
-    if (!folders.emplace(*folder, id).second) return bad_query("runs", id, "each run only once");
+    if (!reported.id_of.emplace(*folder, id).second) {
+      return bad_query("runs", id, "each run only once");
+    }
+    reported.folders.push_back(*folder);
   }
-  return folders;
+  return reported;
+}
+
+/// Without the folders of this machine.
+Error shown_to_client(Error error, const ReportedRuns& reported) {
+  for (const fs::path& folder : reported.folders) {
+    error.message = shown_without(folder.parent_path(), "", std::move(error.message));
+  }
+  return error;
 }
 
 Result<HttpResponse> report_of(server::RunManager& runs,
                                const std::vector<std::string>& ids,
                                evaluation::AlignmentMode alignment,
                                const std::atomic<bool>* cancel) {
-  const auto id_of = folders_of(runs, ids);
-  if (!id_of) return id_of.error();
-  std::vector<fs::path> folders;
-  for (const std::string& id : ids) folders.push_back(*runs.folder(id));
+  const auto reported = reported_runs(runs, ids);
+  if (!reported) return reported.error();
   server::report::ReportOptions options;
   options.alignment = alignment;
   options.max_rows = kMaxServedRows;
   options.cancel = cancel;
   // Only worlds that this server may open, and those that it holds open are shared.
   options.open_world = [&](const fs::path& folder) {
-    return runs.ready_world_of(id_of->at(folder), [&] { return is_cancelled(cancel); });
+    return runs.ready_world_of(reported->id_of.at(folder), [&] { return is_cancelled(cancel); });
   };
-  Result<server::report::MadeReport> made = server::report::make_report(folders, options);
-  if (!made) return made.error();
+  Result<server::report::MadeReport> made = server::report::make_report(reported->folders, options);
+  if (!made) return shown_to_client(made.error(), *reported);
   HttpResponse response = page_response(std::move(made->html));
   const std::string name =
       ids.size() == 1 ? file_part(ids.front()) : std::to_string(ids.size()) + "-runs";

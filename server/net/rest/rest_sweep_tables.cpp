@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/shown_path.hpp"
 #include "server/experiments/compare_sweeps.hpp"
 #include "server/experiments/service/sweep_files.hpp"
 #include "server/experiments/tables/sweep_tables.hpp"
@@ -180,18 +181,20 @@ json quantity_json(const std::string& quantity,
 
 Result<json> comparison_of(const SweepRoutes& routes,
                            const std::string& name,
-                           const ComparisonBody& body) {
+                           const ComparisonBody& body,
+                           Cancel cancel) {
   for (const std::string& sweep : {name, body.baseline}) {
     if (const Result<json> entry = routes.sweeps->entry(sweep); !entry) return entry.error();
   }
   const auto paired = experiments::pair_sweeps(
-      routes.folder / name, routes.folder / body.baseline, body.estimator, body.alignment);
+      routes.folder / name, routes.folder / body.baseline, body.estimator, body.alignment, cancel);
   if (!paired) {
-    if (paired.error().code != ErrorCode::kNotFound) return paired.error();
-    // Its message names folders of this machine.
+    // Without the folders of this machine.
+    return Error{paired.error().code, shown_without(routes.folder, "", paired.error().message)};
+  }
+  if (paired->pairs == 0) {
     return Error{ErrorCode::kNotFound,
-                 name + " and " + body.baseline +
-                     ": no flight was completed in both (same cell, repeat, seed and estimator)"};
+                 name + " and " + body.baseline + ": " + experiments::kNoPairs};
   }
   const auto judged = experiments::judged_conditions(body.conditions, *paired);
   if (!judged) return judged.error();
@@ -234,12 +237,14 @@ void add_sweep_table_routes(RestRouter* router, const SweepRoutes& routes) {
                 if (auto refused = not_json(call.request)) return respond(std::move(*refused));
                 auto body = comparison_body(call.request.body);
                 if (!body) return respond(error_response(body.error()));
-                read_and_answer(routes.readers,
-                                "two sweeps",
-                                call,
-                                respond,
-                                [routes, name = call.path.at("name"), body = std::move(*body)](
-                                    Cancel) { return comparison_of(routes, name, body); });
+                read_and_answer(
+                    routes.readers,
+                    "two sweeps",
+                    call,
+                    respond,
+                    [routes, name = call.path.at("name"), body = std::move(*body)](Cancel cancel) {
+                      return comparison_of(routes, name, body, cancel);
+                    });
               });
 }
 

@@ -13,33 +13,12 @@
 
 #include "core/result.hpp"
 #include "server/net/stream/playback_clock.hpp"
+#include "server/net/stream/stream_request.hpp"
 #include "server/views/view_service.hpp"
 
 namespace overfly::net {
 
 inline constexpr std::size_t kMaxRuns = 16;  ///< that one client watches
-
-/// Another run whose tracks a scene shows.
-struct SceneRun {
-  std::string run_id;
-  server::TrackLook look{};
-  bool operator==(const SceneRun&) const = default;
-};
-
-/// One requested picture stream.
-struct StreamRequest {
-  std::string run_id;
-  std::string name;  ///< "camera", "scene", "depth", "error", "error/NAME" or "debug/NAME"
-  double max_hz = 31.0;
-  int quality = 75;
-  int max_width_px = 1280;
-  bool video = false;               ///< may be sent as VP8
-  std::string camera = {};          ///< for "camera", "depth", "error"; empty = the run's first
-  std::string view = {};            ///< for the stream "scene": the name of its view
-  server::TrackLook look{};         ///< likewise: of the run's tracks
-  std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows
-  bool operator==(const StreamRequest&) const = default;
-};
 
 /// Starts watching a run, or changes its place on the clock.
 struct WatchCommand {

@@ -94,5 +94,21 @@ TEST(SweepResults, OtherLinesAreCountedAndKept) {
   EXPECT_EQ(read_text(file), text);
 }
 
+TEST(SweepResults, ARunOutsideTheSweepIsNotRead) {
+  const TemporaryFolder folder;
+  auto results = SweepResults::open(folder.path());
+  ASSERT_TRUE(results->add(flown("a", evaluation::Outcome::kLost)).ok());
+  const std::string good = read_text(folder.path() / "results.jsonl");
+  for (const char* run : {"/etc", "../other/runs/a", "runs/../..", "runs/", "runs/a/b", "a", ""}) {
+    std::string line = good;
+    line.replace(line.find("runs/a"), 6, run);
+    write_text(folder.path() / "results.jsonl", line);
+    const auto read = SweepResults::read(folder.path());
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_TRUE(read->by_key().empty()) << run;
+    EXPECT_EQ(read->unreadable_lines(), 1) << run;
+  }
+}
+
 }  // namespace
 }  // namespace overfly::server::experiments

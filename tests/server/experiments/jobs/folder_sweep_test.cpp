@@ -264,8 +264,9 @@ TEST_F(FolderSweep, ALateDeliveryOfAnEarlierAttemptIsRemoved) {
   control(two);
   const JobFolder jobs(folder());
   const std::string earlier = "00ffff-0123abcd";
-  ASSERT_TRUE(jobs.deliver({earlier, "gone", 1.0, false, ""}).ok());
+  // The run first, as a worker does: the controller removes both as soon as it sees the delivery.
   fs::create_directories(jobs.run(earlier));
+  ASSERT_TRUE(jobs.deliver({earlier, "gone", 1.0, false, ""}).ok());
   JobWorker own = worker();
   ASSERT_TRUE(step_until_over(own));
   EXPECT_EQ(flights_of(finished(), folder()), 2);

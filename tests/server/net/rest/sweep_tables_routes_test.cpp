@@ -112,5 +112,17 @@ TEST_F(SweepTablesRoutesTest, ComparisonsNameWhatIsAtFault) {
   EXPECT_THAT(none.body, Not(HasSubstr(server_->folder().string())));
 }
 
+TEST_F(SweepTablesRoutesTest, AFlightWhoseScoresAreGoneIsNamed) {
+  const fs::path runs = server_->folder() / "sweeps/more/runs";
+  for (const fs::directory_entry& run : fs::directory_iterator(runs)) {
+    fs::remove(run.path() / "metrics.json");
+  }
+  const Answer gone = compared({{"baseline", "more"}});
+  EXPECT_EQ(gone.status, 404) << gone.body;
+  EXPECT_THAT(gone.body, HasSubstr("more/runs/"));
+  EXPECT_THAT(gone.body, HasSubstr("metrics.json"));
+  EXPECT_THAT(gone.body, Not(HasSubstr(server_->folder().string())));
+}
+
 }  // namespace
 }  // namespace overfly::testing
