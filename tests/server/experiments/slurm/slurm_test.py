@@ -133,8 +133,7 @@ def survive_failures(sweep: Sweep, slurm: cluster.Cluster) -> None:
     after_next_flight("a task is requeued")
     subprocess.run(["scontrol", "requeue", slurm.running_tasks()[0]], check=True)
     after_next_flight("a worker is frozen beyond its lease")
-    frozen = sweep.workers()[0]
-    os.kill(frozen, signal.SIGSTOP)
+    frozen = freeze_worker(sweep, slurm)
     slurm.wait_for("loss of the frozen worker",
                    lambda: f"-{frozen}-" in sweep.log.read_text())
     os.kill(frozen, signal.SIGCONT)
@@ -160,6 +159,26 @@ def survive_failures(sweep: Sweep, slurm: cluster.Cluster) -> None:
                    slurm.text("sinfo", "-h"))
     code = sweep.finish(300)
     assert code == 0, sweep.log.read_text()
+
+
+def freeze_worker(sweep: Sweep, slurm: cluster.Cluster) -> int:
+    """The process id of a stopped worker that holds a flight."""
+    pid = 0
+
+    def frozen() -> bool:
+        nonlocal pid
+        for pid in sweep.workers():
+            try:
+                os.kill(pid, signal.SIGSTOP)
+            except ProcessLookupError:
+                continue  # Killed before; its flight has not been given up yet.
+            if pid in sweep.workers():
+                return True
+            os.kill(pid, signal.SIGCONT)  # It had just delivered: nothing would be lost.
+        return False
+
+    slurm.wait_for("a worker to freeze", frozen)
+    return pid
 
 
 def compare_with_local(overfly: str, file: pathlib.Path, folder: pathlib.Path, sweep: Sweep,
