@@ -4,8 +4,8 @@ Usage: python3 scripts/with_upstream.py SWEEP ADAPTERS [--vocabulary FILE] [--va
     SWEEP       a sweep file; its estimators stay, and the systems with their default parameters join them
     ADAPTERS    folder of overfly-orbslam2, overfly-dso and overfly-svo (docs/ESTIMATORS.md, "Adapters")
     VOCABULARY  of ORB-SLAM2, if it is not in its sources
-    --variants  the other variants of the paper, beside the sweep's baselines: one flight takes 8 estimators at most
-    SYSTEM      orbslam2, dso or svo, beside the sweep's baselines only: in real time others would take its processors
+    --variants  the other variants of the paper, next to the sweep's baselines: one flight takes 8 estimators at most
+    SYSTEM      orbslam2, dso or svo, next to the sweep's baselines only: in real time others would take its processors
 """
 import argparse
 import json

@@ -230,7 +230,7 @@ describe('links', { skip, timeout: 600_000 }, () => {
     });
   });
 
-  step('hide each track of a run that is shown alone', async () => {
+  step('hide each track of a single run', async () => {
     await page.goto('about:blank');
     await dashboard.open(`${stage.server.url}/#layout=compare&run=${kSlow}&t=3`);
     await dashboard.untilSameInstant(kPanels.filter((panel) => panel !== 'camera'));

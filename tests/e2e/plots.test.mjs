@@ -332,7 +332,7 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     const wanted = relative.find(({ length_m }) => length_m === 200).translation_percent.toFixed(3);
     const longest = Math.max(...relative.map(({ length_m }) => length_m));
     const { x, y, width, height } = await plot.locator('.path-area').boundingBox();
-    // The axis ends 8 % beyond the greatest length; beside it are 48 and 16 px.
+    // The axis ends 8 % beyond the greatest length; 48 and 16 px are left and right of it.
     await page.mouse.move(x + 48 + ((width - 64) * 200) / (1.08 * longest), y + height / 3);
     const tip = page.locator('[data-role=plot-tip]');
     await tip.filter({ hasText: 'Translation error · 200 m' }).waitFor();

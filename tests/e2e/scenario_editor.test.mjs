@@ -87,7 +87,7 @@ describe('the scenario editor', { skip, timeout: 900_000 }, () => {
   step('says when the server does not answer, and checks what it can', async () => {
     await page.route('**/scenario-check', (route) => route.abort());
     await control('camera.height_px').fill('240');
-    await page.locator('[data-check=alone]').waitFor();
+    await page.locator('[data-check=browser]').waitFor();
     await control('camera.height_px').fill('2');
     await errorOf('camera.height_px').filter({ hasText: 'must be in' }).waitFor();
     await page.unroute('**/scenario-check');

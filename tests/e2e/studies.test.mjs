@@ -80,7 +80,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
   });
 
   step(
-    'offers to explain a run whose estimator failed, in the list and beside its errors',
+    'offers to explain a run whose estimator failed, in the list and next to its errors',
     async () => {
       await page.locator('.run[data-run=planted] [data-role=explain]').waitFor();
       await role('explain-estimator').first().waitFor();

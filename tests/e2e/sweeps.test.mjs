@@ -254,7 +254,7 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await matrix('hold').first().waitFor();
   });
 
-  step('saves its tables, beside published errors', async () => {
+  step('saves its tables, next to published errors', async () => {
     const save = async (format) => {
       const saved = page.waitForEvent('download');
       await page.locator(`.sweep-files [data-format=${format}]`).click();

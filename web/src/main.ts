@@ -12,6 +12,7 @@ import './styles/errors.css';
 import './styles/plots.css';
 import './styles/plot3d.css';
 import './styles/side.css';
+import './styles/runs.css';
 import './styles/scenario.css';
 import './styles/timeline.css';
 import './styles/estimators.css';

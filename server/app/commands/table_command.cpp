@@ -77,7 +77,7 @@ void add_table_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out, "Write to this file instead of the standard output");
   command->add_option("--published",
                       arguments->published,
-                      "Show the errors of this file beside the sweep's (JSON)");
+                      "Show the errors of this file next to the sweep's (JSON)");
   command
       ->add_option("--as",
                    arguments->counterparts,

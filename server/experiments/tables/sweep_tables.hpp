@@ -1,4 +1,4 @@
-// The tables of a sweep: errors of estimators beside each other, outcomes, differences.
+// The tables of a sweep: errors of estimators next to each other, outcomes, differences.
 #pragma once
 
 #include <map>

@@ -14,9 +14,14 @@ export class RestError extends Error {
   }
 }
 
+/** Of what was thrown, for people. */
+export function errorText(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
 /** What to show at the fields of a form; an error of no field has an empty path. */
 export function fieldErrorsOf(error: unknown): FieldError[] {
-  const message = error instanceof Error ? error.message : String(error);
+  const message = errorText(error);
   if (!(error instanceof RestError)) return [{ field: '', message }];
   if (error.fieldErrors.length > 0) return error.fieldErrors;
   // "flight.mavlink: must be ..." of a request that is forbidden.

@@ -108,7 +108,7 @@ export interface SweepFiles {
   jobs: { default: number; most: number };
 }
 
-/** What is at fault with a sweep's document, or what flying it costs. */
+/** What is wrong with a sweep's document, or what flying it costs. */
 export interface SweepCheck {
   valid: boolean;
   message: string;
@@ -121,7 +121,7 @@ export interface SweepCheck {
   flight_s: number | null;
 }
 
-/** A sweep beside another one, flight by flight. */
+/** A sweep compared with another one, flight by flight. */
 export interface SweepComparison {
   pairs: number;
   without_pair: number;

@@ -2,7 +2,7 @@
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_error';
 import type { Metrics } from '../protocol/rest_types';
-import { kDefaultAlignment } from './error_table';
+import { alignmentModes, allMetrics, kDefaultAlignment } from './error_table';
 import type { Notices } from './notices';
 import type { EstimateRows } from './run_data';
 import { estimateRows } from './run_data';
@@ -49,7 +49,18 @@ export class Alignment {
   /** Draws every watched run by the chosen alignments, where its score permits. */
   async refresh(): Promise<void> {
     const { watched } = this.store.state;
+    this.leaveUnknown();
     await Promise.all(watched.flatMap((one) => [this.refreshRun(one), this.refreshCompared(one)]));
+  }
+
+  /** The scores say which alignments there are; a link may name others. */
+  private leaveUnknown(): void {
+    const { state } = this.store;
+    const modes = alignmentModes(allMetrics(state.watched));
+    const [first] = modes;
+    if (first === undefined) return;
+    if (!modes.includes(state.alignment)) state.alignment = first;
+    if (state.compared !== null && !modes.includes(state.compared)) state.compared = null;
   }
 
   private async refreshRun(watched: WatchedRun): Promise<void> {
@@ -78,18 +89,25 @@ export class Alignment {
     const { metrics, id, data, compared } = watched;
     const mode = state.compared;
     if (mode === (compared?.mode ?? null)) return;
-    const attempt = `${id}/${mode ?? ''} compared`;
-    if (mode === null || mode === kDefaultAlignment) {
-      watched.compared = mode === null ? null : { mode, estimates: data.estimates };
+    const take = (estimates: Map<string, EstimateRows> | null) => {
+      watched.compared = mode === null || estimates === null ? null : { mode, estimates };
       this.store.change('rows', 'metrics');
-    } else if (canBeDrawn(metrics, mode) && !this.tried.has(attempt)) {
-      this.tried.add(attempt);
-      const estimates = await this.placed(watched, mode);
-      if (state.watchedRun(id) !== watched || state.compared !== mode) return;
-      this.tried.delete(attempt);
-      watched.compared = { mode, estimates };
-      this.store.change('rows', 'metrics');
+    };
+    // What another alignment drew does not stay.
+    if (mode === null || compared !== null) take(null);
+    if (mode === null) return;
+    if (mode === kDefaultAlignment) {
+      take(data.estimates);
+      return;
     }
+    const attempt = `${id}/${mode} compared`;
+    if (!canBeDrawn(metrics, mode) || this.tried.has(attempt)) return;
+    this.tried.add(attempt);
+    const estimates = await this.placed(watched, mode);
+    if (state.watchedRun(id) !== watched || state.compared !== mode) return;
+    if (estimates.size === 0) return;
+    this.tried.delete(attempt);
+    take(estimates);
   }
 
   private async placed(watched: WatchedRun, mode: string): Promise<Map<string, EstimateRows>> {

@@ -1,6 +1,6 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
-import { fieldErrorsOf } from '../connection/rest_error';
+import { errorText, fieldErrorsOf } from '../connection/rest_error';
 import type { JsonObject, Run } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
@@ -48,7 +48,7 @@ export class Catalogue {
       state.scenarios = await this.rest.scenarios();
       state.listError = null;
     } catch (error) {
-      state.listError = textOf(error);
+      state.listError = errorText(error);
       this.store.change('lists');
       return;
     }
@@ -76,7 +76,7 @@ export class Catalogue {
       const { repeatedRun, scenarioName } = this.store.state;
       if (scenarioName === name && repeatedRun === null) state.scenarioDocument = document;
     } catch (error) {
-      state.launchErrors = [{ field: '', message: textOf(error) }];
+      state.launchErrors = [{ field: '', message: errorText(error) }];
     }
     this.store.change('launch');
   }
@@ -88,7 +88,7 @@ export class Catalogue {
     try {
       document = await this.rest.runScenario(run.id);
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
       return;
     }
     // Pages that need a scenario's name go on with the same one.
@@ -114,6 +114,9 @@ export class Catalogue {
     const document = this.checkedDocument();
     if (state.launching || document === null) return false;
     state.launching = true;
+    // The server checks it now: an earlier check does not answer any more.
+    state.scenarioEdits = new Map(state.scenarioEdits);
+    state.scenarioEditor.check = state.scenarioEdits.size === 0 ? 'none' : 'done';
     this.store.change('launch');
     let started = false;
     try {
@@ -129,7 +132,7 @@ export class Catalogue {
     return started;
   }
 
-  /** The changed scenario, for a study; null, with its errors shown, if it is at fault. */
+  /** The changed scenario, for a study; null, with its errors shown, if it has any. */
   asked(): StudyScenario | null {
     return this.checkedDocument() === null ? null : this.chosen();
   }
@@ -153,7 +156,7 @@ export class Catalogue {
     return { scenario: '', overrides: {}, document, title };
   }
 
-  /** The changed scenario; null, with its errors shown, if it is at fault. */
+  /** The changed scenario; null, with its errors shown, if it has any. */
   private checkedDocument(): JsonObject | null {
     const { state } = this.store;
     const { scenarioDocument, scenarioEdits, scenarioSchema } = state;
@@ -198,7 +201,7 @@ export class Catalogue {
     try {
       await action();
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
     }
     await this.readRuns();
   }
@@ -217,12 +220,12 @@ export class Catalogue {
       }
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
-      state.listError = textOf(error);
+      state.listError = errorText(error);
     }
     this.store.change('lists');
   }
 
-  /** Says which runs ended; those that the viewer stopped need no word. */
+  /** Says which runs ended; those that the viewer stopped are not announced. */
   private announceEnded(before: readonly Run[], now: readonly Run[]): void {
     const active = new Set(before.filter(isActive).map(({ id }) => id));
     for (const run of now) {
@@ -245,8 +248,4 @@ export class Catalogue {
     const failing = this.store.state.listError !== null;
     this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -65,11 +65,11 @@ export const kErrorFigures: readonly Figure[] = [
 ];
 
 /** Lengths of the sub-paths whose errors are shown [m]; the metrics have every hundred to 800 m. */
-export const kRelativeLengths_m: readonly number[] = [100, 200, 400, 800, 1000, 2000, 5000];
+const kRelativeLengths_m: readonly number[] = [100, 200, 400, 800, 1000, 2000, 5000];
 /** Longer ones are shown where the path has them. */
 const kAlwaysShown_m = 800;
 
-/** Errors over sub-paths of one length, as of KITTI; undefined if the path is shorter. */
+/** Errors over sub-paths of one length, as in KITTI; undefined if the path is shorter. */
 export function relativeError(
   errors: AlignmentErrors,
   length_m: number,

@@ -3,6 +3,7 @@ import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../protoco
 import { driftOf, kErrorFigures, relativeError, runErrors, shownLengths_m } from './error_figures';
 import { fixRows, neesRows } from './fix_errors';
 import { formatNumber, formatPercent, kNothing, numberOf } from './format';
+import type { WatchedRun } from './watched_run';
 
 export const kDefaultAlignment = 'init_scale';
 
@@ -26,6 +27,14 @@ export interface ErrorRow {
 export interface ErrorTable {
   estimators: { name: string; outcome: string; good: boolean }[];
   rows: ErrorRow[];
+}
+
+/** Estimators of all runs, to find their alignments. */
+export function allMetrics(watched: readonly WatchedRun[]): Metrics {
+  const entries = watched.flatMap(({ id, metrics }) =>
+    Object.entries(metrics?.estimators ?? {}).map(([name, one]) => [`${id}/${name}`, one] as const),
+  );
+  return { estimators: Object.fromEntries(entries) };
 }
 
 /** Names of the alignments in the metrics; the paper's comes first. */

@@ -44,12 +44,6 @@ export function formatDate(utc: string): string {
   return `${day} ${pad(date.getHours(), 2)}:${pad(date.getMinutes(), 2)}`;
 }
 
-/** Wraps to (-180, 180]. */
-export function wrapDegrees(angle_deg: number): number {
-  const wrapped = angle_deg - 360 * Math.floor((angle_deg + 180) / 360);
-  return wrapped === -180 ? 180 : wrapped;
-}
-
 function pad(value: number, digits: number): string {
   return String(value).padStart(digits, '0');
 }

@@ -1,7 +1,8 @@
 // The launcher's fields: the values of a scenario that are changed most often.
 import type { FieldError } from '../protocol/field_errors';
 import type { Json, JsonObject } from '../protocol/rest_types';
-import { withValue } from './scenario/draft';
+import { valueIn, withValue } from './scenario/draft';
+import { isObject } from './scenario/schema_node';
 
 export interface FieldSpec {
   /** Dotted path in the scenario document. */
@@ -175,18 +176,9 @@ export const kFields: readonly FieldSpec[] = [
   },
 ];
 
-export function valueAt(document: JsonObject, path: string): Json | undefined {
-  let value: Json | undefined = document;
-  for (const part of path.split('.')) {
-    if (typeof value !== 'object' || value === null || Array.isArray(value)) return undefined;
-    value = value[part];
-  }
-  return value;
-}
-
 export function fieldsOf(document: JsonObject): FieldSpec[] {
   return kFields.filter(
-    ({ needs }) => needs === undefined || valueAt(document, needs) !== undefined,
+    ({ needs }) => needs === undefined || valueIn(document, needs) !== undefined,
   );
 }
 
@@ -195,7 +187,7 @@ export function fieldsOf(document: JsonObject): FieldSpec[] {
  * names.
  */
 export function fieldText(document: JsonObject, field: FieldSpec): string {
-  const value = valueAt(document, field.path);
+  const value = valueIn(document, field.path);
   if (field.kind === 'estimators') return estimatorsOf(value).map(nameOf).join(',');
   return typeof value === 'number' || typeof value === 'string' ? String(value) : '';
 }
@@ -214,7 +206,7 @@ export function withFieldText(
   const text = typed.trim();
   if (text === fieldText(document, field)) return document;
   if (field.kind === 'estimators') {
-    const known = [document, base].flatMap((one) => estimatorsOf(valueAt(one, field.path)));
+    const known = [document, base].flatMap((one) => estimatorsOf(valueIn(one, field.path)));
     return withValue(document, field.path, estimatorList(text, known));
   }
   if (text === '' && field.removes !== undefined) {
@@ -233,17 +225,13 @@ export function withOverrides(document: JsonObject, overrides: Record<string, Js
     let place = changed;
     for (const part of parts) {
       const inner = place[part];
-      const next = isRecord(inner) ? inner : {};
+      const next = isObject(inner) ? inner : {};
       place[part] = next;
       place = next;
     }
     place[last] = value;
   }
   return changed;
-}
-
-function isRecord(value: Json | undefined): value is JsonObject {
-  return typeof value === 'object' && value !== null && !Array.isArray(value);
 }
 
 /**
@@ -257,7 +245,7 @@ export function fieldOfError(fields: readonly FieldSpec[], error: FieldError): F
 
 function estimatorsOf(value: Json | undefined): JsonObject[] {
   if (!Array.isArray(value)) return [];
-  return value.filter(isRecord);
+  return value.filter(isObject);
 }
 
 function nameOf(estimator: JsonObject): string {

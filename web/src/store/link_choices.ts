@@ -28,6 +28,9 @@ export interface LinkChoices {
 
 const kMostZooms = 40;
 const kLongestName = 200;
+/** Of the clock: longer than any flight, and exact to the millisecond. */
+const kLatest_s = 1e6;
+const kShortest_s = 1e-3;
 
 export function usualChoices(): LinkChoices {
   return {
@@ -57,8 +60,8 @@ export function writeChoices(choices: LinkChoices, fields: URLSearchParams): voi
   if (loop) fields.set('loop', '1');
   if (debugOf !== null) fields.set('debug', debugOf);
   if (imageErrorOf !== null) fields.set('error', imageErrorOf);
-  for (const [group, { scale, x, y }] of zooms) {
-    if (scale === kWholePicture.scale) continue;
+  const zoomed = [...zooms].filter(([, { scale }]) => scale !== kWholePicture.scale);
+  for (const [group, { scale, x, y }] of zoomed.slice(-kMostZooms)) {
     fields.append('zoom', [...[scale, x, y].map((part) => part.toFixed(4)), group].join(','));
   }
 }
@@ -118,7 +121,8 @@ function word(text: string): string | null {
 function secondsPair(text: string): Span | null {
   const match = /^(-?[0-9.]{1,20}),(-?[0-9.]{1,20})$/.exec(text);
   const [begin, end] = [Number(match?.[1] ?? NaN), Number(match?.[2] ?? NaN)];
-  return begin < end ? [begin, end] : null;
+  const sane = Math.max(Math.abs(begin), Math.abs(end)) <= kLatest_s;
+  return sane && end - begin >= kShortest_s ? [begin, end] : null;
 }
 
 function rangeOf([begin_s, end_s]: Span): ClockRange {

@@ -8,6 +8,7 @@ import { nameOf, readChoices, readPart, writeChoices } from './link_choices';
 import { kMostRuns } from './session';
 import type { TrackColour } from './track_colours';
 import { isTrackColour } from './track_colours';
+import { indexOfLetter, letterOf } from './tracks';
 
 export interface ShownRun {
   id: string;
@@ -51,18 +52,18 @@ export interface ReadPermalink extends Permalink {
 }
 
 /** Of one kind, of all runs. */
-const kMostOfRuns = 300;
+const kMostOfRuns = 1000;
 
 /**
  * "#layout=NAME&panels=ARRANGEMENT&study=NAME&run=ID&run=ID@OFFSET&main=ID&view=VIEW&show=PARTS&
- * pictures=main&hide=A&hide=B/ESTIMATOR&camera=A/NAME&colour=3,B/ESTIMATOR&...&t=SECONDS": OFFSET in seconds, by default
- * 0; A, B, ... are the runs in their order; for the rest see link_choices.ts. Unknown parts are
- * ignored.
+ * pictures=main&hide=A&hide=B/ESTIMATOR&camera=A/NAME&colour=3,B/ESTIMATOR&...&t=SECONDS": OFFSET
+ * in seconds, by default 0; A, B, ... are the runs in their order; for the rest see
+ * link_choices.ts. Unknown parts are ignored.
  */
 export function parsePermalink(hash: string): ReadPermalink {
   const fields = new URLSearchParams(hash.replace(/^#/, ''));
   const problems: string[] = [];
-  const named = fields.getAll('run').map(shownRun);
+  const named = fields.getAll('run').map((text) => shownRun(text, problems));
   const once = named.filter(
     ({ id }, i) => id !== '' && named.findIndex((run) => run.id === id) === i,
   );
@@ -100,8 +101,11 @@ export function formatPermalink(link: Permalink): string {
   if (show !== '') fields.set('show', show);
   if (!sideBySide) fields.set('pictures', 'main');
   runs.forEach(({ hidden, camera, colours }, i) => {
-    for (const name of hidden) fields.append('hide', ofRun(i, name));
-    for (const [name, colour] of colours) fields.append('colour', `${colour},${ofRun(i, name)}`);
+    const most = kMostOfRuns / kMostRuns;
+    for (const name of [...hidden].slice(0, most)) fields.append('hide', ofRun(i, name));
+    for (const [name, colour] of [...colours].slice(0, most)) {
+      fields.append('colour', `${colour},${ofRun(i, name)}`);
+    }
     if (camera !== null) fields.append('camera', ofRun(i, camera));
   });
   writeChoices(choices, fields);
@@ -125,9 +129,9 @@ function linkedRuns(
     const texts = fields.getAll(field);
     if (texts.length > kMostOfRuns) problems.push(field);
     for (const text of texts.slice(0, kMostOfRuns)) {
-      const parts = /^(?:([^,/]*),)?([A-P])(?:\/(.{1,200}))?$/u.exec(text);
+      const parts = /^(?:([^,/]*),)?([A-Z])(?:\/(.{1,200}))?$/u.exec(text);
       const [, before = '', letter = '', name = ''] = parts ?? [];
-      const run = linked[letter === '' ? -1 : letterIndex(letter)];
+      const run = linked[indexOfLetter(letter)];
       readPart(field, text, () => (run !== undefined && take(run, name, before)) || null, problems);
     }
   };
@@ -151,14 +155,8 @@ function linkedRuns(
 
 /** A name that belongs to a run, '' = to the run itself. */
 function ofRun(index: number, name: string): string {
-  const letter = String.fromCharCode(kLetterA + index);
+  const letter = letterOf(index);
   return name === '' ? letter : `${letter}/${name}`;
-}
-
-const kLetterA = 'A'.charCodeAt(0);
-
-function letterIndex(letter: string): number {
-  return letter.charCodeAt(0) - kLetterA;
 }
 
 function readPanels(text: string | null, problems: string[]): LayoutNode | null {
@@ -172,12 +170,14 @@ function readPanels(text: string | null, problems: string[]): LayoutNode | null 
   }
 }
 
-function shownRun(text: string): ShownRun {
-  const [, id = text, offset = ''] = /^(.*)@(-?[0-9.]+)$/.exec(text) ?? [];
-  return { id, offset_ns: nanoseconds(offset) ?? 0 };
+function shownRun(text: string, problems: string[]): ShownRun {
+  const [, id = text, offset] = /^(.*)@(-?[0-9.]+)$/.exec(text) ?? [];
+  if (offset === undefined) return { id, offset_ns: 0 };
+  return { id, offset_ns: readPart('run', text, () => nanoseconds(offset), problems) ?? 0 };
 }
 
+/** null for what is no time, or too long to be exact. */
 function nanoseconds(text: string): number | null {
-  const seconds = text === '' ? NaN : Number(text);
-  return Number.isFinite(seconds) ? Math.round(seconds * 1e9) : null;
+  const t_ns = text === '' ? NaN : Math.round(Number(text) * 1e9);
+  return Number.isSafeInteger(t_ns) ? t_ns : null;
 }

@@ -83,6 +83,9 @@ export class Session implements StreamListener {
       state.wantedSpeed = null;
       this.livePlace_ns = null;
       this.pending = { t_ns, settings };
+    } else if (this.pending !== null) {
+      const { pending } = this;
+      this.pending = { t_ns: t_ns ?? pending.t_ns, settings: settings ?? pending.settings };
     } else {
       const now = state.clock ?? kUsualClock;
       for (const command of settingCommands(settings ?? now, now)) this.command(command);

@@ -42,13 +42,18 @@ export class TrackColours {
   /** @param colour  null = as usual */
   choose(run: string, name: string, colour: TrackColour | null): void {
     const { state } = this.store;
-    const colours = new Map(state.colours);
     const key = colourKey(run, name);
-    colours.delete(key);
-    if (colour !== null) colours.set(key, colour);
-    state.colours = colours;
+    const withChoice = (before: ReadonlyMap<string, TrackColour>) => {
+      const colours = new Map(before);
+      colours.delete(key);
+      if (colour !== null) colours.set(key, colour);
+      return colours;
+    };
+    state.colours = withChoice(state.colours);
+    // Those of a link are not the viewer's, and last only as long as the page.
+    const kept = withChoice(this.read());
     try {
-      this.storage.setItem(kKey, JSON.stringify([...colours].slice(-kMostKept)));
+      this.storage.setItem(kKey, JSON.stringify([...kept].slice(-kMostKept)));
     } catch {
       // Without storage the colours last until the page is closed.
     }

@@ -27,8 +27,20 @@ export interface Track {
 
 /** 'A', 'B', ... by the order of watching; '' for the only run that is watched. */
 export function runLetter({ watched }: Pick<State, 'watched'>, run: WatchedRun): string {
-  return watched.length < 2 ? '' : String.fromCharCode(65 + watched.indexOf(run));
+  return watched.length < 2 ? '' : letterOf(watched.indexOf(run));
 }
+
+/** 'A' for 0. */
+export function letterOf(index: number): string {
+  return String.fromCharCode(kLetterA + index);
+}
+
+/** -1 for what is no letter from A to Z. */
+export function indexOfLetter(letter: string): number {
+  return /^[A-Z]$/.test(letter) ? letter.charCodeAt(0) - kLetterA : -1;
+}
+
+const kLetterA = 'A'.charCodeAt(0);
 
 /** All tracks, run by run; each run's truth comes first. */
 export function tracksOf(state: Pick<State, 'watched' | 'colours'>): Track[] {
@@ -61,7 +73,7 @@ export function shownTracks(state: Pick<State, 'watched' | 'colours'>): Track[] 
 }
 
 /** The track by the second alignment; none of a truth, or while there is no second one. */
-export function secondOf(track: Track): Track[] {
+function secondOf(track: Track): Track[] {
   const { run, name, label } = track;
   if (name === '' || run.compared?.estimates.has(name) !== true) return [];
   const by = run.compared.mode;

@@ -47,7 +47,7 @@ export class WatchedRun {
   /** Time of the clock at its beginning, as requested. */
   offset_ns = 0;
   aligned: AlignedEstimates | null = null;
-  /** By a second alignment, drawn beside the first; null = none. */
+  /** By a second alignment, drawn next to the first; null = none. */
   compared: AlignedEstimates | null = null;
   /** Empty until its manifest was read. */
   cameras: CameraInfo[] = [];

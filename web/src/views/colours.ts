@@ -6,7 +6,7 @@ import { hueOf } from '../store/plots/plot_specs';
 import type { TrackColour } from '../store/track_colours';
 import type { Track } from '../store/tracks';
 
-export const kTruthColour = 'var(--truth)';
+const kTruthColour = 'var(--truth)';
 
 /** By the estimator's index in the run. */
 const kEstimateColours = [
@@ -23,7 +23,7 @@ export function estimateColour(index: number): string {
 }
 
 /** A colour that the viewer chose, as in a style sheet. */
-export function chosenColour(colour: TrackColour): string {
+function chosenColour(colour: TrackColour): string {
   return colour.length === 1 ? estimateColour(Number(colour) - 1) : `#${colour}`;
 }
 

@@ -10,7 +10,7 @@ import { kShortcuts } from './shortcuts';
 import { saveReport } from './runs/report_button';
 import type { Context } from './view';
 
-const kMostRuns = 500;
+const kMostListed = 500;
 
 export function commandsOf(context: Context): Command[] {
   return [
@@ -216,7 +216,7 @@ function studyCommands({ catalogue, store, studies }: Context): Command[] {
 }
 
 function runCommands({ session, store }: Context): Command[] {
-  return (store.state.runs ?? []).slice(0, kMostRuns).map(({ id, title, scenario, status }) => ({
+  return (store.state.runs ?? []).slice(0, kMostListed).map(({ id, title, scenario, status }) => ({
     id: `run ${id}`,
     group: 'Open run',
     title: title || scenario,

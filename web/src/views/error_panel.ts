@@ -6,6 +6,7 @@ import { kTextFormats } from '../store/table_text';
 import type { ErrorRow, ErrorTable } from '../store/error_table';
 import {
   alignmentModes,
+  allMetrics,
   errorTable,
   joinedTables,
   texelsPerPixel,
@@ -13,7 +14,7 @@ import {
   textureLimited,
 } from '../store/error_table';
 import { formatNumber, kNothing } from '../store/format';
-import type { Metrics, Run } from '../protocol/rest_types';
+import type { Run } from '../protocol/rest_types';
 import type { State, Topic } from '../store/state';
 import type { Track } from '../store/tracks';
 import { tracksOf } from '../store/tracks';
@@ -80,16 +81,14 @@ export class ErrorPanel implements View {
     rebuild(this.alignment, shown.join(' '), () =>
       shown.map((mode) => h('option', { value: mode }, mode)),
     );
-    if (!shown.includes(state.alignment)) state.alignment = shown[0] ?? state.alignment;
     this.alignment.value = state.alignment;
     rebuild(this.compared, shown.join(' '), () => [
       h('option', { value: '' }, 'no other alignment'),
       ...shown.map((mode) => h('option', { value: mode }, mode)),
     ]);
-    if (modes.length > 0 && !modes.some((mode) => mode === state.compared)) state.compared = null;
     this.compared.value = state.compared ?? '';
     this.compared.disabled = modes.length === 0;
-    this.compared.title = 'A second alignment beside the first: dashed in the plots';
+    this.compared.title = 'A second alignment next to the first: dashed in the plots';
     this.alignment.disabled = modes.length === 0;
     const drawn = state.watched.some(({ metrics }) => canBeDrawn(metrics, state.alignment));
     this.alignment.title = drawn
@@ -199,14 +198,6 @@ function tableOf({ run, metrics }: WatchedRun, alignment: string): ErrorTable {
   const empty = { estimators: Object.fromEntries(names.map((name) => [name, { outcome: '' }])) };
   const scored = metrics?.estimators !== undefined;
   return errorTable(scored ? metrics : empty, alignment, names);
-}
-
-/** Estimators of all runs, to find their alignments. */
-function allMetrics(watched: readonly WatchedRun[]): Metrics {
-  const entries = watched.flatMap(({ id, metrics }) =>
-    Object.entries(metrics?.estimators ?? {}).map(([name, one]) => [`${id}/${name}`, one] as const),
-  );
-  return { estimators: Object.fromEntries(entries) };
 }
 
 function headOf(track: Track) {

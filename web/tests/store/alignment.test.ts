@@ -83,6 +83,37 @@ describe('Alignment', () => {
     expect(drawnTracks(state).map(({ label }) => label)).toEqual(['truth', 'feature']);
   });
 
+  it('leaves what was drawn by an alignment that is not chosen any more', async () => {
+    const { state } = viewing.store;
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
+    const chosen = alignment();
+    await chosen.compare('sim3');
+    expect(state.main?.compared?.mode).toBe('sim3');
+    // Its score has no transform.
+    await chosen.compare('se3');
+    expect(state.compared).toBe('se3');
+    expect(state.main?.compared).toBeNull();
+    // No score has it: it comes from a link.
+    await chosen.compare('sim3');
+    await chosen.compare('foo');
+    expect(state.compared).toBeNull();
+    expect(state.main?.compared).toBeNull();
+    await chosen.choose('foo');
+    expect(state.alignment).toBe('init_scale');
+  });
+
+  it('asks again for a second alignment that could not be read', async () => {
+    viewing.socket.receive({ type: 'metrics', run: 'r1', metrics });
+    const read = answer;
+    answer = () => Response.json({ error: { code: 'internal', message: 'no' } }, { status: 500 });
+    const chosen = alignment();
+    await chosen.compare('sim3');
+    expect(viewing.store.state.main?.compared).toBeNull();
+    answer = read;
+    await chosen.compare('sim3');
+    expect(viewing.store.state.main?.compared?.mode).toBe('sim3');
+  });
+
   it('knows the scale of each alignment', async () => {
     const alignments = { init_scale: { scale: 2 }, sim3: { scale: 3, S_world_vo: {} } };
     const scored = { estimators: { feature: { outcome: 'COMPLETED', alignments } } };

@@ -1,11 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import {
-  formatDuration,
-  formatNumber,
-  formatPercent,
-  formatTime,
-  wrapDegrees,
-} from '../../src/store/format';
+import { formatDuration, formatNumber, formatPercent, formatTime } from '../../src/store/format';
 
 describe('formatting', () => {
   it('writes numbers with fixed digits, and a dash for none', () => {
@@ -37,15 +31,5 @@ describe('formatting', () => {
     [-5, '00:00.000'],
   ])('writes %d ns as %s', (t_ns, text) => {
     expect(formatTime(t_ns)).toBe(text);
-  });
-
-  it.each([
-    [180, 180],
-    [-180, 180],
-    [181, -179],
-    [720, 0],
-    [-539, -179],
-  ])('wraps %d to %d', (angle, wrapped) => {
-    expect(wrapDegrees(angle)).toBe(wrapped);
   });
 });

@@ -47,6 +47,26 @@ describe('the launcher', () => {
     expect(course['pacing']).toBe('lockstep');
   });
 
+  it('lets an airframe fly the course in wind and turbulence', () => {
+    const flown: JsonObject = {
+      ...course,
+      flight: { course: { airspeed_m_s: 25, dynamics: 'coordinated', turbulence: 'none' } },
+    };
+    const changed = typed(flown, {
+      'flight.course.dynamics': 'piper_cub_third',
+      'flight.course.turbulence': 'light',
+      'flight.course.wind.speed_m_s': '5',
+    });
+    expect(changed['flight']).toEqual({
+      course: {
+        airspeed_m_s: 25,
+        dynamics: 'piper_cub_third',
+        turbulence: 'light',
+        wind: { speed_m_s: 5 },
+      },
+    });
+  });
+
   it('removes what is optional when its field is emptied', () => {
     const flown: JsonObject = {
       ...course,

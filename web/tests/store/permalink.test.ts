@@ -116,6 +116,11 @@ describe('permalink', () => {
     ['window', '3,1'],
     ['window', '1'],
     ['range', '1,Infinity'],
+    ['range', '1,99999999999999999999'],
+    ['window', '50000000000000000,50000000000000008'],
+    ['window', '1,1.0001'],
+    ['t', '1e300'],
+    ['t', '99999999999'],
     ['range', '1,2,3'],
     ['speed', '1000'],
     ['speed', 'NaN'],
@@ -148,6 +153,24 @@ describe('permalink', () => {
     expect(view).toBe('top');
   });
 
+  it('says that the offset of a run cannot be read, and shows the run', () => {
+    const { runs, problems } = parsePermalink(`#run=r@${'9'.repeat(305)}&run=s@1.2.3`);
+    expect(runs).toEqual([...alone('r'), ...alone('s')]);
+    expect(problems).toHaveLength(2);
+    expect(problems[0]?.length).toBeLessThan(60);
+  });
+
+  it('writes no more than it reads', () => {
+    const names = (count: number) => Array.from({ length: count }, (_, i) => `n${i}`);
+    const hidden = new Set(names(500));
+    const colours = new Map(names(500).map((name) => [name, '3']));
+    const runs = Array.from({ length: 16 }, (_, i) => alone(`r${i}`, { hidden, colours })).flat();
+    const zooms = new Map(names(100).map((group) => [group, { scale: 2, x: 0.5, y: 0.5 }]));
+    const choices = { ...usualChoices(), zooms };
+    const { problems } = parsePermalink(formatPermalink({ ...kUsual, runs, choices }));
+    expect(problems).toEqual([]);
+  });
+
   it('takes no more than a viewer can have', () => {
     const many = (count: number, part: (i: number) => string) =>
       Array.from({ length: count }, (_, i) => part(i)).join('&');
@@ -155,14 +178,14 @@ describe('permalink', () => {
     expect(runs.runs).toHaveLength(16);
     expect(runs.problems).toEqual(['more than 16 runs']);
     const hidden = parsePermalink(`#run=r&${many(5000, (i) => `hide=A/n${i}`)}`);
-    expect(hidden.runs[0]?.hidden.size).toBe(300);
+    expect(hidden.runs[0]?.hidden.size).toBe(1000);
     expect(hidden.problems).toEqual(['hide']);
     const zooms = parsePermalink(`#${many(100, (i) => `zoom=2,0.5,0.5,g${i}`)}`);
     expect(zooms.choices.zooms.size).toBe(40);
     expect(zooms.problems).toEqual(['zoom']);
   });
 
-  it('has an arrangement of panels beside the name of a layout', () => {
+  it('has an arrangement of panels next to the name of a layout', () => {
     const hash = formatPermalink({ ...kUsual, layout: 'camera', panels: kPanels });
     expect(hash).toBe(`#layout=camera&panels=${layoutText(kPanels)}`);
     expect(read(hash).panels).toEqual(kPanels);

@@ -73,6 +73,20 @@ describe('Session', () => {
     expect(socket.last()).not.toHaveProperty('begin_ns');
   });
 
+  it('follows the last of two permalinks that are opened before their runs are there', () => {
+    const { session, socket } = viewing;
+    const settings = { range: null, speed: 2, loop: false };
+    session.showRuns([{ id: 'r1', offset_ns: 0 }], null, 1.5e9, settings);
+    session.showRuns([{ id: 'r1', offset_ns: 0 }], null, 0.5e9);
+    const before = socket.sent.length;
+    socket.receive(playbackMessage());
+    expect(socket.sent.slice(before)).toMatchObject([
+      { type: 'speed', value: 2 },
+      { type: 'seek', t_ns: 0.5e9 },
+    ]);
+    expect(socket.types().filter((type) => type === 'seek')).toHaveLength(1);
+  });
+
   it('goes to the instant of a permalink without the run that cannot be shown', () => {
     const { session, socket } = viewing;
     const runs = ['r1', 'r2'].map((id) => ({ id, offset_ns: 0 }));

@@ -42,6 +42,22 @@ describe('colours of tracks', () => {
     expect(store.state.colours.get(colourKey('r11', 'a'))).toBe('123abc');
   });
 
+  it('of a link are not kept, and replace none that are', () => {
+    const storage = new FakeStorage();
+    const { store } = new Viewing();
+    const colours = new TrackColours(store, storage);
+    colours.choose('r1', 'a', '2');
+    store.state.colours = new Map([[colourKey('r1', 'b'), '5']]);
+    colours.choose('r2', 'c', '3');
+    expect(store.state.colours.get(colourKey('r1', 'b'))).toBe('5');
+    const next = new Viewing().store;
+    new TrackColours(next, storage);
+    expect([...next.state.colours]).toEqual([
+      ['r1/a', '2'],
+      ['r2/c', '3'],
+    ]);
+  });
+
   it.each(['{', '7', '[["r/a","red"],["r/b","2"],[1,"2"],"x"]', null])(
     'leave out of the storage what is none: %s',
     (text) => {

@@ -60,10 +60,10 @@ TEST_F(SweepTablesRoutesTest, PublishedErrorsStandBeside) {
   const json files = ask(server_->port(), "GET", "/api/v1/sweep-files").json();
   EXPECT_EQ(files.at("published"), json({"paper"}));
   EXPECT_THAT(tables("").body, Not(HasSubstr("4.25")));
-  const Answer beside = tables("?published=paper&as=perfect=DSO");
-  ASSERT_EQ(beside.status, 200) << beside.body;
-  EXPECT_THAT(beside.body, HasSubstr("Published: A paper"));
-  EXPECT_THAT(beside.body, HasSubstr("4.25"));
+  const Answer with_published = tables("?published=paper&as=perfect=DSO");
+  ASSERT_EQ(with_published.status, 200) << with_published.body;
+  EXPECT_THAT(with_published.body, HasSubstr("Published: A paper"));
+  EXPECT_THAT(with_published.body, HasSubstr("4.25"));
   EXPECT_EQ(tables("?published=paper&as=perfect=SVO").status, 400);
   EXPECT_EQ(tables("?published=paper&as=perfect").status, 400);
   for (const char* name : {"none", "..%2f..%2fworld", "%2fetc%2fpasswd", "..%2ftiny"}) {

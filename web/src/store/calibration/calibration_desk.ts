@@ -1,6 +1,6 @@
 // Runs a calibration on the server and follows it. The page computes nothing of the camera itself.
 import type { CalibrationClient, SessionControl } from '../../connection/calibration_client';
-import { RestError } from '../../connection/rest_error';
+import { errorText, RestError } from '../../connection/rest_error';
 import type { CalibrationSession } from '../../protocol/calibration_types';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
@@ -61,7 +61,7 @@ export class CalibrationDesk {
       page.listError = null;
       chooseFirst(page);
     } catch (error) {
-      page.listError = textOf(error);
+      page.listError = errorText(error);
     }
     this.changed();
   }
@@ -145,7 +145,7 @@ export class CalibrationDesk {
       try {
         await this.sendOne(id, file, generation);
       } catch (error) {
-        if (this.generation === generation) page.error = `${file.name}: ${textOf(error)}`;
+        if (this.generation === generation) page.error = `${file.name}: ${errorText(error)}`;
         break;
       }
       if (this.generation !== generation) return;
@@ -222,7 +222,7 @@ export class CalibrationDesk {
       page.cameras = cameras;
       page.form.camera = cameras[0] ?? '';
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     this.changed();
   }
@@ -282,7 +282,7 @@ export class CalibrationDesk {
         this.forget();
         page.error = 'The calibration was closed by the server.';
       } else {
-        page.error = textOf(error);
+        page.error = errorText(error);
       }
       this.changed();
     }
@@ -339,7 +339,7 @@ export class CalibrationDesk {
     try {
       await action();
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     page.busy = false;
     this.changed();
@@ -377,8 +377,4 @@ function chooseFirst({ sources, form }: CalibrationPage): void {
     const names = form.names as Record<string, string>;
     if (!list?.some(({ name }) => name === names[kind])) names[kind] = list?.[0]?.name ?? '';
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

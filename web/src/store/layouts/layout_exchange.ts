@@ -1,4 +1,5 @@
 // Exports own layouts to files and imports them, and reports the result to the viewer.
+import { errorText } from '../../connection/rest_error';
 import type { Notices } from '../notices';
 import type { LayoutFile, ReadableFile } from './layout_file';
 import { readLayoutFile, writeLayoutFile } from './layout_file';
@@ -36,7 +37,7 @@ export class LayoutExchange {
         this.layouts.choose(only);
       }
     } catch (error) {
-      const problem = error instanceof Error ? error.message : String(error);
+      const problem = errorText(error);
       this.notices.error(`No layout was imported from ${file.name}. ${problem}`);
     }
   }

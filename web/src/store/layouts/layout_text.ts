@@ -73,6 +73,6 @@ function parsed(text: string): unknown {
   try {
     return JSON.parse(atob(text.replaceAll('-', '+').replaceAll('_', '/'))) as unknown;
   } catch {
-    throw new LayoutError('panels', `${quoted(text)} is no arrangement`);
+    throw new LayoutError('panels', `${quoted(text)} is not an arrangement of panels`);
   }
 }

@@ -31,7 +31,7 @@ export function panelsOf(node: LayoutNode): PanelName[] {
 }
 
 /** The panels in front. */
-export function frontPanels(node: LayoutNode): PanelName[] {
+function frontPanels(node: LayoutNode): PanelName[] {
   return 'tabs' in node ? [node.active] : node.parts.flatMap((part) => frontPanels(part.node));
 }
 

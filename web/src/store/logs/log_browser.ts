@@ -1,6 +1,6 @@
 // The page of flight logs: listed, uploaded, looked at, flown.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_error';
+import { errorText, fieldErrorsOf } from '../../connection/rest_error';
 import type { Upload } from '../../connection/upload';
 import type { FieldError } from '../../protocol/field_errors';
 import type { LogEntry, LogInfo, LogList, LogSeries, WorldExtent } from '../../protocol/log_types';
@@ -103,7 +103,7 @@ export class LogBrowser {
       this.page.listError = null;
     } catch (error) {
       if (number !== this.listing) return;
-      this.page.listError = textOf(error);
+      this.page.listError = errorText(error);
     }
     this.changed();
   }
@@ -181,7 +181,7 @@ export class LogBrowser {
         this.sending.signal,
       );
     } catch (error) {
-      page.uploadError = `${name}: ${textOf(error)}`;
+      page.uploadError = `${name}: ${errorText(error)}`;
       return;
     } finally {
       page.upload = null;
@@ -209,7 +209,7 @@ export class LogBrowser {
         this.page.flight = newLogFlight(this.page.flight.scenario);
       }
     } catch (error) {
-      this.page.listError = textOf(error);
+      this.page.listError = errorText(error);
     }
     await this.readList();
   }
@@ -254,7 +254,7 @@ export class LogBrowser {
       await action(reading.signal);
     } catch (error) {
       if (reading.signal.aborted) return;
-      this.page.error = textOf(error);
+      this.page.error = errorText(error);
       this.page.series = null;
     }
     if (reading.signal.aborted) return;
@@ -269,8 +269,4 @@ export class LogBrowser {
   private changed(): void {
     this.store.change('logs');
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

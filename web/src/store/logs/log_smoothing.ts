@@ -1,4 +1,5 @@
 // What smoothing leaves of the chosen log's samples: asked for while it is shown, with progress.
+import { errorText } from '../../connection/rest_error';
 import type { RestClient } from '../../connection/rest_client';
 import type { LogResiduals, WorkProgress } from '../../protocol/log_types';
 import type { Store } from '../state';
@@ -91,7 +92,7 @@ export class LogSmoothing {
       const residuals = await this.rest.logResiduals(name, request, id, working.signal);
       outcome = { residuals, error: null };
     } catch (error) {
-      const text = error instanceof Error ? error.message : String(error);
+      const text = errorText(error);
       outcome = { residuals: null, error: text };
     }
     if (working.signal.aborted) return;

@@ -1,7 +1,7 @@
 // Draws missions: opens worlds, edits with undo, asks the server what they will be like, saves and
 // flies them. The page computes nothing of a flight itself.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf } from '../../connection/rest_error';
+import { errorText, fieldErrorsOf } from '../../connection/rest_error';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Storage } from '../layouts/layouts';
 import type { Session } from '../session';
@@ -186,7 +186,7 @@ export class MissionDesk extends MissionEditor {
       const world = page.worlds?.find(({ scenarios }) => scenarios.includes(name));
       await work(document, world?.name ?? kUsualWorld);
     } catch (error) {
-      page.notes = [`${name}: ${textOf(error)}`];
+      page.notes = [`${name}: ${errorText(error)}`];
     }
     page.working = false;
     this.reporter.schedule();
@@ -316,7 +316,7 @@ export class MissionDesk extends MissionEditor {
       page.selected = null;
       page.notes = [`${file.name}: ${mission.items.length} items.`, ...notFlown(mission)];
     } catch (error) {
-      page.notes = [`${file.name}: ${textOf(error)}`];
+      page.notes = [`${file.name}: ${errorText(error)}`];
     }
     this.changed();
   }
@@ -334,8 +334,4 @@ export class MissionDesk extends MissionEditor {
   protected override onEdit(): void {
     this.reporter.schedule();
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

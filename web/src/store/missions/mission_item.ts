@@ -1,5 +1,5 @@
 // The items of a mission as they are edited: MAVLink commands with a place and parameters.
-import type { Json, JsonObject } from '../../protocol/rest_types';
+import type { JsonObject } from '../../protocol/rest_types';
 
 /** MAV_CMD. */
 export const kCommand = {
@@ -163,8 +163,4 @@ export function withParam(item: SimpleItem, index: number, value: number | null)
   const params = [...item.params];
   params[index] = value;
   return { ...item, params };
-}
-
-export function numberOr(value: Json | undefined, absent: number): number {
-  return typeof value === 'number' && Number.isFinite(value) ? value : absent;
 }

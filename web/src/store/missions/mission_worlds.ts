@@ -1,6 +1,6 @@
 // The worlds over which missions are drawn: listed, opened, made.
 import type { RestClient } from '../../connection/rest_client';
-import { RestError } from '../../connection/rest_error';
+import { errorText, RestError } from '../../connection/rest_error';
 import type { Store } from '../state';
 import { isInside } from './mission_document';
 import type { Home } from './mission_item';
@@ -21,7 +21,7 @@ export class MissionWorlds {
     try {
       this.page.worlds = await this.rest.worlds();
     } catch (error) {
-      this.page.worldError = textOf(error);
+      this.page.worldError = errorText(error);
     }
     this.changed();
   }
@@ -38,7 +38,7 @@ export class MissionWorlds {
       if (page.draft === null || page.draft.world === name) page.world = world;
     } catch (error) {
       page.worldMissing = error instanceof RestError && error.status === 409;
-      page.worldError = page.worldMissing ? null : textOf(error);
+      page.worldError = page.worldMissing ? null : errorText(error);
     }
     this.changed();
   }
@@ -56,7 +56,7 @@ export class MissionWorlds {
     } catch (error) {
       // Making it takes longer than the server lets a request wait: it goes on.
       if (error instanceof RestError && error.code === 'timeout') await this.untilMade(id);
-      else page.worldError = textOf(error);
+      else page.worldError = errorText(error);
     }
     page.making = null;
     await this.read();
@@ -104,8 +104,4 @@ export class MissionWorlds {
   private changed(): void {
     this.store.change('missions');
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -1,5 +1,6 @@
 // What the pixel under the mouse shows: asked from the server, because the picture on the screen may
 // be reduced and is compressed.
+import { errorText } from '../../connection/rest_error';
 import type { RestClient } from '../../connection/rest_client';
 import type { PixelAnswer, PixelQuestion } from '../../protocol/pixel_types';
 import { formatNumber } from '../format';
@@ -58,7 +59,7 @@ export class PixelProbe {
       try {
         answer = await this.rest.pixel(question);
       } catch (error) {
-        answer = error instanceof Error ? error.message : String(error);
+        answer = errorText(error);
       }
       if (this.store.state.hover !== null) {
         this.store.state.pixel = { question, answer };

@@ -1,4 +1,4 @@
-// The values of many curves at one time, as a list beside the mouse.
+// The values of many curves at one time, as a list next to the mouse.
 
 export interface HoverRow {
   /** Of the curve. */

@@ -1,4 +1,5 @@
 // Reads what differs between the runs that are shown together, while that is shown.
+import { errorText } from '../../connection/rest_error';
 import type { Differences } from '../../protocol/rest_types';
 
 export type DifferenceRest = {
@@ -47,7 +48,7 @@ export class DifferenceReader {
     try {
       answer = await this.rest.differences(runs, reading.signal);
     } catch (error) {
-      answer = error instanceof Error ? error.message : String(error);
+      answer = errorText(error);
       if (!reading.signal.aborted) this.key = '';
     }
     if (reading.signal.aborted) return;

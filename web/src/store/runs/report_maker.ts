@@ -1,4 +1,5 @@
 // Lets the server write the report of the runs that are shown together.
+import { errorText } from '../../connection/rest_error';
 import type { Run } from '../../protocol/rest_types';
 import { isActive } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
@@ -47,7 +48,7 @@ export class ReportMaker {
       const page = await this.rest.report(runs, this.store.state.alignment);
       return { fileName: reportName(runs), page };
     } catch (error) {
-      const text = error instanceof Error ? error.message : String(error);
+      const text = errorText(error);
       this.notices.error(`The report cannot be made: ${text}`);
       return null;
     } finally {
@@ -57,7 +58,8 @@ export class ReportMaker {
 
   private refusal(runs: readonly string[]): string | null {
     if (this.making) return 'A report is being made already.';
-    if (runs.length === 0) return 'No run is shown that is over: only those can be reported.';
+    if (runs.length === 0)
+      return 'None of the shown runs has ended: only ended runs can be reported.';
     if (runs.length > kMostReportRuns) {
       return `${runs.length} runs are shown: a report takes ${kMostReportRuns} at most.`;
     }

@@ -42,7 +42,11 @@ interface Term {
 function termsOf(text: string): Term[] {
   const found = text.matchAll(/(?:(\w+):)?"([^"]*)"?|\S+/g);
   return [...found].flatMap(([whole, field = '', quoted]): Term[] => {
-    if (quoted !== undefined) return quoted === '' ? [] : [{ field, value: quoted }];
+    if (quoted === '') return [];
+    if (quoted !== undefined && (field === '' || kSearchFields.includes(field))) {
+      return [{ field, value: quoted }];
+    }
+    if (quoted !== undefined) return [{ field: '', value: `${field}:${quoted}` }];
     const [, name = '', value = ''] = /^(\w+):(.+)$/.exec(whole) ?? [];
     return [kSearchFields.includes(name) ? { field: name, value } : { field: '', value: whole }];
   });

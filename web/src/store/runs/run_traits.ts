@@ -1,8 +1,8 @@
-// What is flown in each run of a list: apart what differs from the other runs of its title.
+// What is flown in each run of a list, and which of it differs from the other runs of its title.
 import type { Run } from '../../protocol/rest_types';
 
 export interface RunTraits {
-  /** Airspeed, height, ..., estimators, pacing, seed; in the order of the whole. */
+  /** Airspeed, height, ..., estimators, pacing, seed; always in this order. */
   differing: string[];
   /** The rest of the flight. */
   common: string[];
@@ -42,7 +42,7 @@ export function runTraits(runs: readonly Run[]): Map<string, RunTraits> {
   return found;
 }
 
-/** Texts in the order of the whole; '' = none. */
+/** Texts in the order of RunTraits; '' = none. */
 export function traitTexts(run: Run): string[] {
   return traitsOf(run).map(({ text }) => text);
 }

@@ -81,7 +81,7 @@ const kTruth: JsonObject = {
   },
 };
 
-/** Parameters of the types that know them; the doors pass on any. */
+/** Parameters of the types that have fixed ones; programs, LCM and ROS accept any. */
 export const kParameters: Record<string, JsonObject> = {
   feature: kFeature,
   baseline_hold: {},
@@ -132,7 +132,7 @@ function propertiesOf(estimator: JsonObject, type: string): JsonObject {
   return properties;
 }
 
-/** A new estimator beside others, with a name of its own. */
+/** A new estimator next to others, with a name of its own. */
 export function newEstimator(others: readonly Json[], type: string): JsonObject {
   return { name: nameFor(others, type), type };
 }

@@ -2,14 +2,15 @@
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
 import { labelOf, unitOf } from './field_names';
-import { limitsOf } from './schema_check';
 import {
   branchesOf,
   isObject,
+  limitsOf,
   meantBranches,
   nodeFor,
   objectAt,
   objectOf,
+  requiredOf,
   textOf,
 } from './schema_node';
 import { generalFields, kGeneral } from './sections';
@@ -17,6 +18,8 @@ import { generalFields, kGeneral } from './sections';
 interface Place {
   /** Dotted, from the top of the document. */
   path: string;
+  /** Of its elements: the path, but of a variant's value another one. */
+  id: string;
   label: string;
   hint: string;
 }
@@ -105,7 +108,7 @@ function makeNode(
 ): FormNode {
   const node = nodeFor(root, raw, value);
   const name = path.split('.').at(-1) ?? '';
-  const place = { path, label: labelOf(name), hint: textOf(node['description']) };
+  const place = { path, id: path, label: labelOf(name), hint: textOf(node['description']) };
   const { type } = node;
   if (Array.isArray(node['enum'])) {
     const choices = node['enum'].map(String);
@@ -140,7 +143,7 @@ function groupNode(
   return {
     ...place,
     kind: 'group',
-    hint: empty ? `${place.hint} There are none.` : place.hint,
+    hint: empty ? `${place.hint} This type has no parameters.`.trim() : place.hint,
     required: required || open,
     absent,
     fresh: freshValue(root, node) ?? {},
@@ -246,7 +249,9 @@ function variantChildren(
   place: Place,
 ): FormNode[] {
   if ('const' in branch) return [];
-  if (!isObject(value)) return [makeNode(root, branch, value, place.path, true)];
+  if (!isObject(value)) {
+    return [{ ...makeNode(root, branch, value, place.path, true), id: `${place.path}.value` }];
+  }
   return childrenOf(root, branch, value, place.path);
 }
 
@@ -327,9 +332,4 @@ function inOrder(names: readonly string[], first: readonly string[]): string[] {
     ...first.filter((name) => names.includes(name)),
     ...names.filter((name) => !first.includes(name)),
   ];
-}
-
-function requiredOf(node: JsonObject): string[] {
-  const { required } = node;
-  return Array.isArray(required) ? required.map(String) : [];
 }

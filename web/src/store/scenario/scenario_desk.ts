@@ -1,7 +1,7 @@
 // Changes the launcher's scenario: by its fields or as JSON, checked here and by the server when
 // the changes pause; saves it as a scenario of its own.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf, RestError } from '../../connection/rest_error';
+import { errorText, fieldErrorsOf, RestError } from '../../connection/rest_error';
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
 import type { FieldSpec } from '../launch_form';
@@ -48,7 +48,7 @@ export class ScenarioDesk {
       await this.readSchema();
       Object.assign(this.editor, { open: true, saveError: '', replaces: null });
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
     }
     this.changed();
   }
@@ -158,7 +158,7 @@ export class ScenarioDesk {
       const found = await this.rest.checkScenario(document, asking.signal);
       if (current()) this.answer('done', found);
     } catch (error) {
-      if (current()) this.answer('alone', isRefusal(error) ? fieldErrorsOf(error) : []);
+      if (current()) this.answer('browser', isRefusal(error) ? fieldErrorsOf(error) : []);
     }
   }
 
@@ -203,18 +203,23 @@ export class ScenarioDesk {
 
   private async send(name: string, document: JsonObject, replace: boolean): Promise<void> {
     const { editor } = this;
+    const edits = () => JSON.stringify([...this.store.state.scenarioEdits]);
+    const sent = edits();
     Object.assign(editor, { saving: true, saveError: '', replaces: null });
     this.changed();
     try {
       await this.rest.saveScenario(name, document, replace);
       await this.scenarios.readScenarios();
-      await this.scenarios.selectScenario(name);
-      this.notices.info(`The scenario is saved as ${name}.`);
+      // What was typed meanwhile is not in it, and stays.
+      const whole = edits() === sent;
+      if (whole) await this.scenarios.selectScenario(name);
+      const rest = whole ? '' : ' without the changes that were made meanwhile';
+      this.notices.info(`The scenario is saved as ${name}${rest}.`);
     } catch (error) {
       if (error instanceof RestError && error.status === kConflict) this.ask(name);
       else {
         this.store.state.launchErrors = fieldErrorsOf(error).filter(({ field }) => field !== '');
-        this.refuse(textOf(error));
+        this.refuse(errorText(error));
       }
     }
     editor.saving = false;
@@ -231,11 +236,13 @@ export class ScenarioDesk {
   async remove(name: string): Promise<void> {
     try {
       await this.rest.deleteScenario(name);
-      this.store.state.scenarioName = null;
+      const { state } = this.store;
+      Object.assign(state, { scenarioName: null, scenarioDocument: null });
+      this.take(new Map());
       await this.scenarios.readScenarios();
       this.notices.info(`The scenario ${name} is deleted.`);
     } catch (error) {
-      this.refuse(textOf(error));
+      this.refuse(errorText(error));
     }
   }
 
@@ -266,8 +273,4 @@ function withEstimators(document: JsonObject, apply: (list: readonly Json[]) => 
 /** The server read the request and says what is wrong, as opposed to being busy or away. */
 function isRefusal(error: unknown): boolean {
   return error instanceof RestError && error.status >= 400 && error.status < 429;
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -1,4 +1,4 @@
-// What the scenario editor shows besides the scenario and its changes.
+// What the scenario editor shows, except the scenario and its changes.
 import { kGeneral } from './sections';
 
 export interface ScenarioEditorState {
@@ -6,8 +6,8 @@ export interface ScenarioEditorState {
   section: string;
   /** The section is shown as JSON in place of its form. */
   asJson: boolean;
-  /** What is known of the changed scenario; `alone`: the server did not answer. */
-  check: 'none' | 'waiting' | 'done' | 'alone';
+  /** What is known of the changed scenario; `browser`: the server did not answer. */
+  check: 'none' | 'waiting' | 'done' | 'browser';
   saving: boolean;
   /** Why the scenario was not saved; '' = nothing is wrong. */
   saveError: string;

@@ -6,10 +6,12 @@ import {
   branchesOf,
   hasType,
   isObject,
+  limitsOf,
   meantBranches,
   nodeFor,
   objectAt,
   objectOf,
+  requiredOf,
   textOf,
 } from './schema_node';
 
@@ -27,13 +29,6 @@ const kTypes: Record<string, string> = {
 export function documentErrors(schema: JsonObject, document: JsonObject): FieldError[] {
   const errors: FieldError[] = [];
   checkObject(schema, schema, document, '', errors);
-  return errors;
-}
-
-/** Errors of a section's value. */
-export function valueErrors(schema: JsonObject, section: string, value: Json): FieldError[] {
-  const errors: FieldError[] = [];
-  check(schema, objectAt(schema, 'properties')[section], value, section, errors);
   return errors;
 }
 
@@ -96,27 +91,6 @@ function checkNumber(node: JsonObject, value: number, add: (message: string) => 
   if (!holds) add(`must be ${limits.text}`);
 }
 
-/** Limits of a number, and how they are written. */
-export function limitsOf(node: JsonObject) {
-  const limit = (name: string) => {
-    const value = node[name];
-    return typeof value === 'number' ? value : undefined;
-  };
-  const lowOpen = limit('minimum') === undefined;
-  const highOpen = limit('maximum') === undefined;
-  const low = limit('minimum') ?? limit('exclusiveMinimum') ?? -Infinity;
-  const high = limit('maximum') ?? limit('exclusiveMaximum') ?? Infinity;
-  let text = '';
-  if (Number.isFinite(low) && Number.isFinite(high)) {
-    text = `in ${lowOpen ? '(' : '['}${low}, ${high}${highOpen ? ')' : ']'}`;
-  } else if (Number.isFinite(low)) {
-    text = lowOpen ? `above ${low}` : `at least ${low}`;
-  } else if (Number.isFinite(high)) {
-    text = highOpen ? `below ${high}` : `at most ${high}`;
-  }
-  return { low, high, lowOpen, highOpen, text };
-}
-
 function checkText(node: JsonObject, value: string, add: (message: string) => void): void {
   const { pattern, minLength, maxLength } = node;
   if (typeof minLength === 'number' && value.length < minLength) {
@@ -161,21 +135,21 @@ function checkObject(
   const place = (name: string) => (path === '' ? name : `${path}.${name}`);
   const add = (name: string, message: string) => void errors.push({ field: place(name), message });
   const properties = objectAt(node, 'properties');
-  const { required, maxProperties, additionalProperties } = node;
-  for (const name of Array.isArray(required) ? required : []) {
-    if (typeof name === 'string' && !(name in value)) add(name, 'is required');
+  const { maxProperties, additionalProperties } = node;
+  for (const name of requiredOf(node)) {
+    if (!Object.hasOwn(value, name)) add(name, 'is required');
   }
   if (typeof maxProperties === 'number' && Object.keys(value).length > maxProperties) {
     errors.push({ field: path, message: `must have at most ${maxProperties} fields` });
   }
   for (const [name, needed] of Object.entries(objectAt(node, 'dependentRequired'))) {
-    if (!(name in value) || !Array.isArray(needed)) continue;
+    if (!Object.hasOwn(value, name) || !Array.isArray(needed)) continue;
     for (const other of needed.map(String)) {
-      if (!(other in value)) add(other, `is required with ${name}`);
+      if (!Object.hasOwn(value, other)) add(other, `is required with ${name}`);
     }
   }
   for (const [name, entry] of Object.entries(value)) {
-    if (name in properties) check(root, properties[name], entry, place(name), errors);
+    if (Object.hasOwn(properties, name)) check(root, properties[name], entry, place(name), errors);
     else if (additionalProperties === false) add(name, 'is not a known field');
     else if (Object.keys(objectOf(additionalProperties)).length > 0) {
       check(root, additionalProperties, entry, place(name), errors);

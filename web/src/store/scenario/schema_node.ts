@@ -67,8 +67,34 @@ function isMeant(branch: JsonObject, value: Json): boolean {
   if ('const' in branch) return value === branch['const'];
   const type = branch['type'];
   if (typeof type === 'string' && !hasType(value, type)) return false;
-  const required = branch['required'];
-  return !Array.isArray(required) || required.every((name) => textOf(name) in objectOf(value));
+  return requiredOf(branch).every((name) => Object.hasOwn(objectOf(value), name));
+}
+
+/** Names of the fields that an object must have. */
+export function requiredOf(node: JsonObject): string[] {
+  const { required } = node;
+  return Array.isArray(required) ? required.map(String) : [];
+}
+
+/** Limits of a number, and how they are written. */
+export function limitsOf(node: JsonObject) {
+  const limit = (name: string) => {
+    const value = node[name];
+    return typeof value === 'number' ? value : undefined;
+  };
+  const lowOpen = limit('minimum') === undefined;
+  const highOpen = limit('maximum') === undefined;
+  const low = limit('minimum') ?? limit('exclusiveMinimum') ?? -Infinity;
+  const high = limit('maximum') ?? limit('exclusiveMaximum') ?? Infinity;
+  let text = '';
+  if (Number.isFinite(low) && Number.isFinite(high)) {
+    text = `in ${lowOpen ? '(' : '['}${low}, ${high}${highOpen ? ')' : ']'}`;
+  } else if (Number.isFinite(low)) {
+    text = lowOpen ? `above ${low}` : `at least ${low}`;
+  } else if (Number.isFinite(high)) {
+    text = highOpen ? `below ${high}` : `at most ${high}`;
+  }
+  return { low, high, lowOpen, highOpen, text };
 }
 
 export function hasType(value: Json, type: string): boolean {

@@ -1,18 +1,18 @@
-// KITTI poses with the times that lie beside them, as one TUM file: an upload keeps no second file.
+// KITTI poses and the file with their times, as one TUM file: an upload keeps no second file.
 
 const kOrthonormal = 1e-2;
 
 /** Lines with something on them that are no comments. */
-export function dataLines(text: string): string[] {
+function dataLines(text: string): string[] {
   return text
     .split(/\r?\n/)
     .map((line) => line.trim())
     .filter((line) => line !== '' && !line.startsWith('#'));
 }
 
-/** Whether the first line is a KITTI pose: 12 numbers. */
-export function isKitti(text: string): boolean {
-  const [first = ''] = dataLines(text.slice(0, 4096));
+/** Whether the first line is a KITTI pose: 12 numbers. @param beginning  of the file */
+export function isKitti(beginning: string): boolean {
+  const [first = ''] = dataLines(beginning);
   const fields = first.split(/\s+/);
   return fields.length === 12 && fields.every((field) => Number.isFinite(Number(field)));
 }
@@ -25,19 +25,28 @@ export function tumFromKitti(poses: string, times: string): string {
   const rows = dataLines(poses);
   const stamps = dataLines(times);
   if (rows.length !== stamps.length) {
-    throw new Error(`${rows.length} poses, but ${stamps.length} times: they must be as many`);
+    throw new Error(
+      `${rows.length} poses, but ${stamps.length} times: there must be one time for each pose`,
+    );
   }
-  return rows.map((row, i) => `${stamps[i] ?? ''} ${tumPose(row, i + 1).join(' ')}\n`).join('');
+  return rows
+    .map((row, i) => `${stampOf(stamps[i] ?? '', i + 1)} ${tumPose(row, i + 1).join(' ')}\n`)
+    .join('');
+}
+
+function stampOf(line: string, number: number): string {
+  if (Number.isFinite(Number(line))) return line;
+  throw new Error(`time ${number} = ${line.slice(0, 40)} is not a number`);
 }
 
 /** Position and quaternion x, y, z, w of the upper 3 x 4 of a transform, row by row. */
 function tumPose(row: string, number: number): number[] {
   const m = row.split(/\s+/).map(Number);
   if (m.length !== 12 || !m.every(Number.isFinite)) {
-    throw new Error(`pose ${number} has not 12 numbers`);
+    throw new Error(`pose ${number} does not have 12 numbers`);
   }
   const at = (i: number, k: number) => m[4 * i + k] ?? NaN;
-  if (!isRotation(at)) throw new Error(`pose ${number} contains no rotation matrix`);
+  if (!isRotation(at)) throw new Error(`pose ${number} is not a rotation and a position`);
   return [at(0, 3), at(1, 3), at(2, 3), ...quaternionOf(at)];
 }
 

@@ -1,4 +1,5 @@
 // Chooses trajectories, uploads them and has the server score them. The page computes no score.
+import { errorText } from '../../connection/rest_error';
 import type { RestClient } from '../../connection/rest_client';
 import type { Upload } from '../../connection/upload';
 import type { EvaluationRequest } from '../../protocol/score_types';
@@ -60,7 +61,7 @@ export class ScoreDesk {
       page.logs = logs.logs;
       page.listError = null;
     } catch (error) {
-      page.listError = textOf(error);
+      page.listError = errorText(error);
     }
     this.changed();
   }
@@ -104,7 +105,7 @@ export class ScoreDesk {
         else if (name !== page.truth && !page.estimates.includes(name)) await this.toggle(name);
       }
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
       this.changed();
     }
   }
@@ -125,7 +126,7 @@ export class ScoreDesk {
       const never = new AbortController().signal;
       return kLog + (await this.rest.uploadLog(this.upload, query, body, progress, never)).name;
     } catch (error) {
-      throw new Error(`${planned.name}: ${textOf(error)}`);
+      throw new Error(`${planned.name}: ${errorText(error)}`);
     } finally {
       this.page.upload = null;
     }
@@ -140,7 +141,7 @@ export class ScoreDesk {
       page.estimates = page.estimates.filter((estimate) => estimate !== name);
       if (page.truth === name) page.truth = null;
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     await this.readLists();
     await this.score();
@@ -184,7 +185,7 @@ export class ScoreDesk {
       if (scoring.signal.aborted) return;
       page.scores = null;
       page.series = null;
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     page.working = false;
     this.changed();
@@ -232,8 +233,4 @@ export function choiceGroups(page: ScorePage, runs: readonly Run[] | null): Choi
 export function shortName(name: string): string {
   const parts = name.replace(/^[a-z]+:/, '').split('/');
   return parts.slice(-2).join('/');
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

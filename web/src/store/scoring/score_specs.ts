@@ -62,7 +62,7 @@ export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGro
     );
 }
 
-/** Errors by the length of the sub-path (relative pose error, as of KITTI). */
+/** Errors by the length of the sub-path (relative pose error, as in KITTI). */
 export function scoreDrifts({ estimates }: Evaluation, mode: string): DriftSpec[] {
   const scored = estimates.flatMap(({ name, alignments }, colour) => {
     const relative = alignments?.[mode]?.relative ?? [];

@@ -1,5 +1,6 @@
 // What is uploaded of several chosen files: trajectories, KITTI poses joined with their times, and
 // flight logs.
+import { errorText } from '../../connection/rest_error';
 import type { UploadSet } from '../logs/upload_set';
 import { uploadQuery, uploadSets } from '../logs/upload_set';
 import { isKitti, tumFromKitti } from './kitti_times';
@@ -8,6 +9,10 @@ export type PlannedUpload =
   | { kind: 'trajectory'; name: string; body: Blob }
   /** `query` as of RestClient.uploadLog() */
   | { kind: 'log'; name: string; query: string; body: Blob };
+
+const kBeginning_bytes = 4096;
+/** As the server's limit for a trajectory. */
+const kMostJoined_bytes = 64 * 2 ** 20;
 
 const isLog = ({ name }: File) => /\.(tlog|bin|ulg|mcap|bag|active|lcm|log)$/i.test(name);
 const isMapping = ({ name }: File) => /\.json$/i.test(name);
@@ -43,18 +48,18 @@ async function trajectoryPlan(files: readonly File[]): Promise<PlannedUpload[]> 
   if (timesFile === undefined) return poses.map(plain);
   if (second !== undefined)
     throw new Error(`${second.name}: one times file at a time, with its KITTI poses`);
-  const stamps = await timesFile.text();
+  const stamps = await textOf(timesFile);
   let joined = 0;
   const plan: PlannedUpload[] = [];
   for (const file of poses) {
-    const text = await file.text();
-    if (!isKitti(text)) {
+    if (!isKitti(await textOf(file.slice(0, kBeginning_bytes), file.name))) {
       plan.push(plain(file));
       continue;
     }
     joined += 1;
     const name = `${file.name.replace(/\.[^.]*$/, '')}.tum`;
-    plan.push({ kind: 'trajectory', name, body: new Blob([joinedText(file, text, stamps)]) });
+    const text = joinedText(file, await textOf(file), stamps);
+    plan.push({ kind: 'trajectory', name, body: new Blob([text]) });
   }
   if (joined === 0) {
     throw new Error(`${timesFile.name}: choose the KITTI poses that it belongs to as well`);
@@ -62,10 +67,22 @@ async function trajectoryPlan(files: readonly File[]): Promise<PlannedUpload[]> 
   return plan;
 }
 
+async function textOf(file: Blob, name = file instanceof File ? file.name : ''): Promise<string> {
+  if (file.size > kMostJoined_bytes) {
+    const most = kMostJoined_bytes / 2 ** 20;
+    throw new Error(`${name}: has more than ${most} MiB, the limit for KITTI poses and times`);
+  }
+  try {
+    return await file.text();
+  } catch (error) {
+    throw new Error(`${name}: ${errorText(error)}`);
+  }
+}
+
 function joinedText(file: File, text: string, stamps: string): string {
   try {
     return tumFromKitti(text, stamps);
   } catch (error) {
-    throw new Error(`${file.name}: ${error instanceof Error ? error.message : String(error)}`);
+    throw new Error(`${file.name}: ${errorText(error)}`);
   }
 }

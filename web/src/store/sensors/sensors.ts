@@ -1,4 +1,5 @@
 // Samples of the watched run's sensors: read while they are shown, and again as the run goes on.
+import { errorText } from '../../connection/rest_error';
 import type { RestClient } from '../../connection/rest_client';
 import type { SensorCurves } from '../../protocol/sensor_types';
 import { isActive } from '../../protocol/rest_types';
@@ -103,7 +104,7 @@ export class Sensors {
       state.sensorError = null;
     } catch (error) {
       if (reading.signal.aborted) return;
-      state.sensorError = error instanceof Error ? error.message : String(error);
+      state.sensorError = errorText(error);
     }
     this.store.change('sensors');
     const took_ms = this.timers.now_ms() - begin_ms;

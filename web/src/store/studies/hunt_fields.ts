@@ -1,6 +1,6 @@
 // Numeric fields of a scenario that a hunt may search, with limits that most flights have.
 import type { Json, JsonObject } from '../../protocol/rest_types';
-import { valueAt } from '../launch_form';
+import { valueIn } from '../scenario/draft';
 
 export interface HuntField {
   path: string;
@@ -29,12 +29,12 @@ export const kHuntFields: readonly HuntField[] = [
 
 /** The fields that a document has, or may have. */
 export function huntFieldsOf(document: JsonObject): HuntField[] {
-  return kHuntFields.filter(({ needs }) => valueAt(document, needs) !== undefined);
+  return kHuntFields.filter(({ needs }) => valueIn(document, needs) !== undefined);
 }
 
 /** Names of the entries of a list in a document: estimators, cameras. */
 export function namesAt(document: JsonObject | null, path: string): string[] {
-  const list = document === null ? undefined : valueAt(document, path);
+  const list = document === null ? undefined : valueIn(document, path);
   return Array.isArray(list) ? list.map(nameOf).filter((name) => name !== '') : [];
 }
 

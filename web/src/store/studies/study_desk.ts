@@ -1,5 +1,6 @@
 // Reads the studies of the server, again and again while their page is open or one is made; cancels,
 // continues and deletes them.
+import { errorText } from '../../connection/rest_error';
 import type { StudyClient } from '../../connection/study_client';
 import type { JsonObject, Run } from '../../protocol/rest_types';
 import type { StudyEntry } from '../../protocol/study_types';
@@ -105,7 +106,7 @@ export class StudyDesk {
     try {
       return await this.client.worst(name);
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
       return null;
     }
   }
@@ -122,7 +123,7 @@ export class StudyDesk {
     try {
       await action();
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
     }
     await this.open();
   }
@@ -146,7 +147,7 @@ export class StudyDesk {
         this.forget(studies[0]?.name ?? null);
       }
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     if (page.open) await this.readShown();
     if (opening !== this.opening) return;
@@ -173,7 +174,7 @@ export class StudyDesk {
       page.shown = shown;
       page.error = null;
     } catch (error) {
-      if (page.name === name) page.error = textOf(error);
+      if (page.name === name) page.error = errorText(error);
     }
     this.changed();
   }
@@ -184,7 +185,7 @@ export class StudyDesk {
     await this.open();
   }
 
-  /** Says which studies ended; those that the viewer cancelled need no word. */
+  /** Says which studies ended; those that the viewer cancelled are not announced. */
   private announceEnded(before: readonly StudyEntry[], now: readonly StudyEntry[]): void {
     const were = new Set(before.filter(isOpen).map(({ name }) => name));
     for (const study of now) {
@@ -199,8 +200,4 @@ export class StudyDesk {
   private changed(): void {
     this.store.change('studies');
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

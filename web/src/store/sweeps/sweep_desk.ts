@@ -1,5 +1,6 @@
 // Reads the sweeps of the server, again and again while their page is open or one flies; cancels
 // and continues them.
+import { errorText } from '../../connection/rest_error';
 import type { SweepClient } from '../../connection/sweep_client';
 import type { SweepEntry } from '../../protocol/sweep_types';
 import type { Notices } from '../notices';
@@ -56,7 +57,7 @@ export class SweepDesk {
       await this.client.cancel(name);
       this.cancelled.add(name);
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
     }
     await this.open();
   }
@@ -66,7 +67,7 @@ export class SweepDesk {
     try {
       await this.client.continue(name, {});
     } catch (error) {
-      this.notices.error(textOf(error));
+      this.notices.error(errorText(error));
     }
     await this.show(name);
   }
@@ -137,7 +138,7 @@ export class SweepDesk {
         this.forget(page.sweeps[0]?.name ?? null);
       }
     } catch (error) {
-      page.error = textOf(error);
+      page.error = errorText(error);
     }
     if (page.open) await this.readShown();
     if (opening !== this.opening) return;
@@ -164,7 +165,7 @@ export class SweepDesk {
       page.shown = shown;
       page.error = null;
     } catch (error) {
-      if (page.name === name) page.error = textOf(error);
+      if (page.name === name) page.error = errorText(error);
     }
     this.changed();
   }
@@ -176,7 +177,7 @@ export class SweepDesk {
     await this.open();
   }
 
-  /** Says which sweeps ended; those that the viewer cancelled need no word. */
+  /** Says which sweeps ended; those that the viewer cancelled are not announced. */
   private announceEnded(before: readonly SweepEntry[], now: readonly SweepEntry[]): void {
     const flew = new Set(before.filter(({ flying }) => flying).map(({ name }) => name));
     for (const { name, title, flying, progress, problem } of now) {
@@ -196,8 +197,4 @@ export class SweepDesk {
   private changed(): void {
     this.store.change('sweeps');
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

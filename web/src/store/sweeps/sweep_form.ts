@@ -24,7 +24,7 @@ export interface SweepFormState {
   /** Increases when the text is replaced by other means than typing. */
   loaded: number;
   jobs: number;
-  /** null while the text is checked, and if it is at fault. */
+  /** null while the text is checked, and if it has errors. */
   cost: SweepCheck | null;
   checking: boolean;
   starting: boolean;

@@ -1,4 +1,5 @@
 // What is made of a sweep's results: tables as files, and the comparison with another sweep.
+import { errorText } from '../../connection/rest_error';
 import type { SweepClient } from '../../connection/sweep_client';
 import type { SweepComparison } from '../../protocol/sweep_types';
 import type { Notices } from '../notices';
@@ -20,8 +21,8 @@ export const kUsualConditions = [
 export interface SweepResultsState {
   /** Names of files of published errors; null until read. */
   published: string[] | null;
-  /** The one beside the tables; '' = none. */
-  beside: string;
+  /** The one next to the tables; '' = none. */
+  publishedName: string;
   /** ESTIMATOR=PUBLISHED_NAME, with commas between. */
   counterparts: string;
   /** The sweep to compare with; '' = none. */
@@ -38,7 +39,7 @@ export interface SweepResultsState {
 export function initialSweepResults(): SweepResultsState {
   return {
     published: null,
-    beside: '',
+    publishedName: '',
     counterparts: '',
     baseline: '',
     estimator: '',
@@ -81,17 +82,17 @@ export class SweepResults {
 
   /** Says why there is none. */
   async table(name: string, format: TableFormat): Promise<TableFile | null> {
-    const { beside, counterparts } = this.state;
+    const { publishedName, counterparts } = this.state;
     const query: Record<string, string> = { format };
-    if (beside !== '') query.published = beside;
+    if (publishedName !== '') query.published = publishedName;
     const pairs = counterparts.replace(/\s/g, '');
-    if (beside !== '' && pairs !== '') query.as = pairs;
+    if (publishedName !== '' && pairs !== '') query.as = pairs;
     const extension = kTableFormats.find((one) => one.format === format)?.extension ?? 'txt';
     try {
       const content = await this.client.tables(name, query);
       return { fileName: `${name}.${extension}`, content };
     } catch (error) {
-      this.notices.error(`The tables cannot be saved: ${textOf(error)}`);
+      this.notices.error(`The tables cannot be saved: ${errorText(error)}`);
       return null;
     }
   }
@@ -106,7 +107,7 @@ export class SweepResults {
     try {
       comparison = await this.client.compare(name, request);
     } catch (error) {
-      comparison = textOf(error);
+      comparison = errorText(error);
     }
     if (this.store.state.sweepPage.name === name) this.set({ comparing: false, comparison });
   }
@@ -114,8 +115,4 @@ export class SweepResults {
   private get state(): SweepResultsState {
     return this.store.state.sweepPage.results;
   }
-}
-
-function textOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -3,7 +3,7 @@ import type { RestClient } from '../../connection/rest_client';
 import { fieldErrorsOf } from '../../connection/rest_error';
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
-import { valueAt } from '../launch_form';
+import { valueIn } from '../scenario/draft';
 import type { Session } from '../session';
 import type { Store } from '../state';
 
@@ -110,7 +110,7 @@ export function connectOverrides(
     geoid_separation_m: [geoid_m, 0],
   };
   const overrides: Record<string, Json> = {};
-  const own = valueAt(document, 'flight.mavlink');
+  const own = valueIn(document, 'flight.mavlink');
   if (own === undefined) {
     const mavlink: JsonObject = {};
     for (const [name, [value, usual]] of Object.entries(wanted)) {
@@ -124,7 +124,7 @@ export function connectOverrides(
   }
   for (const [name, [value, usual]] of Object.entries(wanted)) {
     const path = `flight.mavlink.${name}`;
-    if ((valueAt(document, path) ?? usual) !== value) overrides[path] = value;
+    if ((valueIn(document, path) ?? usual) !== value) overrides[path] = value;
   }
   return { overrides, errors };
 }
@@ -149,7 +149,7 @@ export class VehicleConnect {
     const chosen = flyable.find(({ name }) => name === scenarioName) ?? flyable[0];
     connect.form.scenario = chosen?.name ?? '';
     const at = (path: string) =>
-      scenarioDocument === null ? undefined : valueAt(scenarioDocument, path);
+      scenarioDocument === null ? undefined : valueIn(scenarioDocument, path);
     const link = at(kLink);
     if (typeof link === 'string') {
       Object.assign(connect.form, formOfLink(link), {

@@ -254,7 +254,7 @@ function marksOf(state: State): Mark[] {
 }
 
 /** Which aircraft are drawn and where [m]. */
-export function marksText(marks: readonly { label: string; place: readonly number[] }[]): string {
+function marksText(marks: readonly { label: string; place: readonly number[] }[]): string {
   return marks
     .map(({ label, place }) => [label, ...place.map((part) => part.toFixed(3))].join(' '))
     .join('; ');

@@ -285,7 +285,7 @@ export class PathPlot {
 }
 
 /** A file with drawings from left to right. */
-export function besides(drawings: readonly Drawing[]): string {
+export function sideBySide(drawings: readonly Drawing[]): string {
   let left = 0;
   const parts = drawings.map(({ width, content }) => {
     left += width;

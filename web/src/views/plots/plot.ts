@@ -252,7 +252,7 @@ export class Plot {
     });
   }
 
-  /** A plot with one curve has its value beside its title. */
+  /** A plot with one curve has its value next to its title. */
   private pointAt(event: PointerEvent | null): void {
     const { spec, plot } = this;
     const steers = (event?.buttons ?? 0) !== 0;

@@ -1,4 +1,4 @@
-// The list beside the mouse on a plot: every curve with its name, value and unit.
+// The list next to the mouse on a plot: every curve with its name, value and unit.
 import { formatNumber } from '../../store/format';
 import { hoverRows } from '../../store/plots/hover_values';
 import type { CurveHue } from '../../store/plots/plot_specs';
@@ -6,7 +6,7 @@ import { curveStyle } from '../colours';
 import { h, setAttribute, setText } from '../dom';
 
 const kOff_px = 14;
-/** More curves do not fit beside a mouse. */
+/** More curves do not fit next to a mouse. */
 const kMostRows = 18;
 
 /** What is pointed at. */
@@ -42,7 +42,7 @@ class PlotTip {
   private readonly title = h('div', { class: 'plot-tip-title' });
   private readonly list = h('div', { class: 'plot-tip-rows' });
   private readonly more = h('div', { class: 'plot-tip-more' });
-  // The values beside the plots' titles are for everybody; these follow the mouse.
+  // The values next to the plots' titles are for everybody; these follow the mouse.
   private readonly root = h(
     'div',
     { class: 'plot-tip', 'data-role': 'plot-tip', 'aria-hidden': 'true', hidden: true },
@@ -61,7 +61,7 @@ class PlotTip {
     }
     if (!this.root.isConnected) document.body.append(this.root);
     setText(this.title, `${label} · ${at.place}`);
-    const notes = more === 0 ? at.states : [`${more} more: point at them`, ...at.states];
+    const notes = more === 0 ? at.states : [`${more} more, farther from the mouse`, ...at.states];
     setText(this.more, notes.slice(0, kMostNotes).join('\n'));
     rows.forEach(({ index, value }, i) => {
       const row = this.row(i);
@@ -93,7 +93,7 @@ class PlotTip {
     return made;
   }
 
-  /** Beside the mouse, and inside the window. */
+  /** Next to the mouse, and inside the window. */
   private place({ x, y }: PointedAt): void {
     const { offsetWidth, offsetHeight } = this.root;
     const left = x + kOff_px + offsetWidth > innerWidth ? x - kOff_px - offsetWidth : x + kOff_px;

@@ -6,9 +6,9 @@ import type { DriftSpec } from '../../store/plots/drift_specs';
 import { driftCsv, driftSpecs } from '../../store/plots/drift_specs';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import { groupOf, plotSpecs } from '../../store/plots/plot_specs';
-import { shownAlignment } from '../../store/state';
 import { tracksCsv } from '../../store/plots/track_files';
 import type { Topic } from '../../store/state';
+import { shownAlignment } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
 import { AlignmentLegend } from '../alignment_legend';
 import { EstimatorTable } from '../estimator_table';
@@ -19,7 +19,7 @@ import { DriftPlot } from './drift_plot';
 import type { PlotActions } from './plot';
 import { takeTimeKeys } from './time_commands';
 import { kMostReadouts, Plot } from './plot';
-import { besides, kPathAxes, PathPlot } from './path_plot';
+import { sideBySide, kPathAxes, PathPlot } from './path_plot';
 import type { PlotFile } from './plot_files';
 import { saveMenu, timePlotsFile } from './plot_files';
 import type { Group } from './plot_groups';
@@ -115,7 +115,6 @@ export class PlotsPanel implements View {
       this.drawTabs();
       if (this.group === 'estimators') this.statuses.draw(this.context.store.state);
     }
-    if (changed.has('metrics') && this.group === 'drift') this.drawSoon();
     if (changed.has('theme')) {
       for (const plot of [...this.plots, ...this.paths, ...this.drifts]) plot.repaint();
     }
@@ -207,7 +206,7 @@ export class PlotsPanel implements View {
       return {
         name: group,
         csv: () => tracksCsv(this.context.store.state),
-        svg: () => besides(this.paths.map((path) => path.drawing())),
+        svg: () => sideBySide(this.paths.map((path) => path.drawing())),
       };
     }
     if (group === 'drift') {
@@ -215,7 +214,7 @@ export class PlotsPanel implements View {
       return {
         name: group,
         csv: () => driftCsv(drifts),
-        svg: () => besides(this.drifts.map((drift) => drift.drawing())),
+        svg: () => sideBySide(this.drifts.map((drift) => drift.drawing())),
       };
     }
     const specs = this.specs();

@@ -12,8 +12,8 @@ export class ColourSheet {
 
   constructor(private readonly context: Context) {}
 
-  /** @param beside  the button that opens it */
-  open(track: Track, beside: HTMLElement): void {
+  /** @param opener  the button that opens it */
+  open(track: Track, opener: HTMLElement): void {
     const { run, name, label, chosen } = track;
     const choose = (colour: string | null) => {
       this.root.hidePopover();
@@ -40,12 +40,12 @@ export class ColourSheet {
       h('label', { title: 'Any colour' }, other),
       h(
         'button',
-        { class: 'tab', title: 'The colour as usual', onclick: () => choose(null) },
+        { class: 'tab', title: 'The default colour', onclick: () => choose(null) },
         'Automatic',
       ),
     );
     this.root.showPopover();
-    const { left, bottom } = beside.getBoundingClientRect();
+    const { left, bottom } = opener.getBoundingClientRect();
     this.root.style.left = `${Math.min(left, window.innerWidth - this.root.offsetWidth - 8)}px`;
     this.root.style.top = `${Math.min(bottom + 4, window.innerHeight - this.root.offsetHeight - 8)}px`;
     this.root.querySelector('button')?.focus();

@@ -13,11 +13,11 @@ import type { Context } from '../view';
 /** Estimators whose results an entry shows. */
 const kShownResults = 3;
 
-/** What an entry shows besides the run. */
+/** What an entry shows in addition to the run. */
 export interface EntryState {
   traits: RunTraits;
   selected: boolean;
-  /** Shown together with the main run, or alone. */
+  /** Shown, with the main run or without others. */
   shown: boolean;
   /** Number of runs that are shown. */
   watched: number;

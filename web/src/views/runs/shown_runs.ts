@@ -11,7 +11,7 @@ import { icon } from '../icons';
 import type { Context } from '../view';
 import { ColourSheet } from './colour_sheet';
 
-/** Of a run that is shown alone only its tracks: the rest is in the list. */
+/** Of a single run only its tracks: the rest is in the list. */
 export class ShownRuns {
   readonly root = h('ul', { class: 'shown-runs', 'aria-label': 'Runs shown, and their tracks' });
 
@@ -34,9 +34,9 @@ export class ShownRuns {
     const drawn = tracks.map(({ label, shown, chosen }) => [label, shown, chosen]);
     const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
     const runs = watched.map(({ id }) => [id, names.get(id)]);
-    const alone = watched.length < 2;
+    const single = watched.length < 2;
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
-      alone
+      single
         ? [h('li', { class: 'shown-run' }, this.tracksOf(tracks))]
         : watched.map((one) =>
             this.entry(
@@ -53,7 +53,7 @@ export class ShownRuns {
       if (offset !== undefined && offset.value !== text) offset.value = text;
     }
     this.root.hidden = watched.length === 0;
-    this.root.classList.toggle('alone', alone);
+    this.root.classList.toggle('single', single);
   }
 
   private entry(watched: WatchedRun, name: string, letter: string, tracks: Track[]): HTMLElement {

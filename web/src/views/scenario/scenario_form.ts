@@ -6,6 +6,7 @@ import type {
   FormNode,
   GroupNode,
   ListNode,
+  TextNode,
   ValueNode,
   VariantNode,
 } from '../../store/scenario/form_nodes';
@@ -61,7 +62,7 @@ export class ScenarioForm {
   /** Values of the controls, but of the one in which the viewer types. */
   private fill(nodes: readonly FormNode[]): void {
     for (const node of nodes) {
-      const control = this.rows.get(node.path)?.control ?? null;
+      const control = this.rows.get(node.id)?.control ?? null;
       if (control !== null && control !== document.activeElement) fillControl(control, node);
       if (node.kind === 'list') {
         for (const { path, title, children } of node.entries) {
@@ -89,14 +90,10 @@ export class ScenarioForm {
     }
   }
 
-  private row(
-    { path, label, hint }: { path: string; label: string; hint: string },
-    control: Control,
-    unit = '',
-  ): HTMLElement {
-    const note = h('span', { class: 'row-hint', id: `hint-${path}`, title: hint }, hint);
-    const error = this.error(path, note, control);
-    control.setAttribute('aria-describedby', `hint-${path} error-${path}`);
+  private row({ path, id, label, hint }: FormNode, control: Control, unit = ''): HTMLElement {
+    const note = h('span', { class: 'row-hint', id: `hint-${id}`, title: hint }, hint);
+    const error = this.error(id, note, control);
+    control.setAttribute('aria-describedby', `hint-${id} error-${id}`);
     const kind = control.tagName === 'TEXTAREA' ? 'form-row tall' : 'form-row';
     return h(
       'div',
@@ -108,14 +105,14 @@ export class ScenarioForm {
     );
   }
 
-  private error(path: string, hint: HTMLElement | null, control: Control | null): HTMLElement {
+  private error(id: string, hint: HTMLElement | null, control: Control | null): HTMLElement {
     const error = h('span', {
       class: 'row-error',
-      id: `error-${path}`,
+      id: `error-${id}`,
       role: 'alert',
       hidden: true,
     });
-    this.rows.set(path, { error, hint, control });
+    this.rows.set(id, { error, hint, control });
     return error;
   }
 
@@ -242,7 +239,7 @@ function offer(select: HTMLSelectElement, text: string): void {
 
 function valueControl(node: ValueNode, actions: FormActions): Control {
   const { path, input, choices, usual, required } = node;
-  const id = `edit-${path}`;
+  const id = `edit-${node.id}`;
   const read = (text: string) => {
     const value = valueOfInput(input, text);
     // A text may be empty where it must be given: the error says so.
@@ -276,8 +273,8 @@ function valueControl(node: ValueNode, actions: FormActions): Control {
   return field;
 }
 
-function jsonControl({ path }: { path: string }, actions: FormActions): Control {
-  const area = h('textarea', { id: `edit-${path}`, rows: 4, spellcheck: 'false' });
+function jsonControl({ path, id }: TextNode, actions: FormActions): Control {
+  const area = h('textarea', { id: `edit-${id}`, rows: 4, spellcheck: 'false' });
   area.addEventListener('input', () => actions.set(path, valueOfJson(area.value)));
   return area;
 }

@@ -20,7 +20,7 @@ const kChecks = {
   none: 'No changes.',
   waiting: 'Checking …',
   done: 'The server has checked the changes: no errors.',
-  alone: 'The server does not answer: checked in the browser only.',
+  browser: 'The server does not answer: checked in the browser only.',
 };
 
 export class ScenarioPageView implements View {

@@ -18,7 +18,7 @@ import { panned, zoomed } from '../../store/time_window';
 import { h, rebuild } from '../dom';
 import { DriftPlot } from '../plots/drift_plot';
 import type { PathAxes } from '../plots/path_plot';
-import { besides, kPathAxes, PathPlot } from '../plots/path_plot';
+import { sideBySide, kPathAxes, PathPlot } from '../plots/path_plot';
 import type { PlotActions } from '../plots/plot';
 import { Plot } from '../plots/plot';
 import type { PlotFile } from '../plots/plot_files';
@@ -116,7 +116,7 @@ export class ScorePlots {
       return {
         name,
         csv: () => scorePathsCsv(series, mode),
-        svg: () => besides(this.paths.map(({ plot }) => plot.drawing())),
+        svg: () => sideBySide(this.paths.map(({ plot }) => plot.drawing())),
       };
     }
     if (this.group === 'drift') {
@@ -124,7 +124,7 @@ export class ScorePlots {
       return {
         name,
         csv: () => driftCsv(drifts),
-        svg: () => besides(this.drifts.map((drift) => drift.drawing())),
+        svg: () => sideBySide(this.drifts.map((drift) => drift.drawing())),
       };
     }
     const specs = this.specs();

@@ -37,8 +37,11 @@ export class SweepResultsView {
     this.drawAnswer(results);
   }
 
-  private drawFiles({ name }: SweepEntry, { published, beside, counterparts }: SweepResultsState) {
-    rebuild(this.files, JSON.stringify([name, published, beside]), () => [
+  private drawFiles(
+    { name }: SweepEntry,
+    { published, publishedName, counterparts }: SweepResultsState,
+  ) {
+    rebuild(this.files, JSON.stringify([name, published, publishedName]), () => [
       h('h3', {}, 'Tables'),
       h(
         'div',
@@ -63,12 +66,12 @@ export class SweepResultsView {
                 select(
                   'sweep-published',
                   [['', 'nothing'], ...published.map(same)],
-                  beside,
-                  (text) => this.context.sweeps.results.set({ beside: text }),
+                  publishedName,
+                  (text) => this.context.sweeps.results.set({ publishedName: text }),
                 ),
               ),
             ]),
-        ...(beside === ''
+        ...(publishedName === ''
           ? []
           : [
               labelled(

@@ -36,8 +36,8 @@ describe('an arrangement as text', () => {
   });
 
   it.each([
-    ['no base64', '%%%', 'no arrangement'],
-    ['no JSON', encoded('{"row":'), 'no arrangement'],
+    ['no base64', '%%%', 'not an arrangement'],
+    ['no JSON', encoded('{"row":'), 'not an arrangement'],
     ['a number', encoded(7), 'must be an object'],
     ['nothing', encoded('null'), 'must be an object'],
     ['an unknown panel', encoded('"radar"'), 'no panel "radar"'],

@@ -42,7 +42,7 @@ describe('ReportMaker', () => {
   it('asks for nothing without a run that is over, or with too many', async () => {
     const none = making(['running']);
     expect(await none.maker.make()).toBeNull();
-    expect(none.texts()[0]).toMatch(/No run is shown that is over/);
+    expect(none.texts()[0]).toMatch(/None of the shown runs has ended/);
     const many = making(new Array<RunStatus>(kMostReportRuns + 1).fill('completed'));
     expect(await many.maker.make()).toBeNull();
     expect(many.texts()[0]).toBe('17 runs are shown: a report takes 16 at most.');

@@ -46,6 +46,15 @@ describe('matching', () => {
   });
 });
 
+describe('fields that there are not', () => {
+  it.each(['constructor:"x"', '__proto__:"x"', 'foo:"bar"', 'toString:x', ':"'])(
+    'find nothing: %s',
+    (text) => {
+      expect(matching(runs, text)).toEqual([]);
+    },
+  );
+});
+
 describe('searchFor', () => {
   it('finds the field, whatever is in it', () => {
     expect(searchFor('tag', 'wind')).toBe('tag:wind');

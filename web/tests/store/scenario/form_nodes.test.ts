@@ -121,7 +121,7 @@ describe('the form of a section', () => {
     const hold = form('estimators', withValue(course, 'estimators.0.type', 'baseline_hold'));
     expect(hold.get('estimators.0.parameters')).toMatchObject({
       absent: false,
-      hint: 'Parameters of baseline_hold. There are none.',
+      hint: 'Parameters of baseline_hold. This type has no parameters.',
     });
   });
 

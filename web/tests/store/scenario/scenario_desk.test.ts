@@ -108,7 +108,7 @@ describe('changes of the scenario', () => {
     await pause();
     asked[0]?.answer(new RestError(0, 'unreachable', 'the server does not answer'));
     await settle();
-    expect(state.scenarioEditor.check).toBe('alone');
+    expect(state.scenarioEditor.check).toBe('browser');
     expect(state.launchErrors).toEqual([]);
   });
 
@@ -153,6 +153,27 @@ describe('saving a scenario', () => {
     expect(saved[0]?.[1]['name']).toBe('small');
     expect(chosen).toEqual(['small']);
     expect(state.notices.map(({ text }) => text)).toEqual(['The scenario is saved as small.']);
+  });
+
+  it('keeps what is typed while it is saved', async () => {
+    const { subject, saved, chosen, state } = desk();
+    subject.setValue('title', 'First');
+    const saving = subject.save('small', false);
+    subject.setValue('title', 'Second');
+    await saving;
+    expect(saved[0]?.[1]['title']).toBe('First');
+    expect(chosen).toEqual([]);
+    expect(state.scenarioEdits.get('title')).toBe('"Second"');
+    expect(state.notices.at(-1)?.text).toMatch(/without the changes that were made meanwhile/u);
+  });
+
+  it('shows nothing of a scenario that was deleted', async () => {
+    const { subject, state } = desk();
+    subject.setValue('title', 'First');
+    await subject.remove('mine');
+    expect(state.scenarioName).toBeNull();
+    expect(state.scenarioDocument).toBeNull();
+    expect(state.scenarioEdits.size).toBe(0);
   });
 
   it('asks before it replaces a saved one, also one that it did not know of', async () => {

@@ -35,9 +35,10 @@ describe('tumFromKitti', () => {
 
   it.each([
     [`${kIdentity}\n${kIdentity}`, '0', '2 poses, but 1 times'],
-    [`${kIdentity}\n1 2 3`, '0\n1', 'pose 2 has not 12 numbers'],
-    [kIdentity.replace('1', '-1'), '0', 'pose 1 contains no rotation matrix'],
-    [kIdentity.replace('1', '1.1'), '0', 'pose 1 contains no rotation matrix'],
+    [`${kIdentity}\n1 2 3`, '0\n1', 'pose 2 does not have 12 numbers'],
+    [kIdentity.replace('1', '-1'), '0', 'pose 1 is not a rotation and a position'],
+    [kIdentity.replace('1', '1.1'), '0', 'pose 1 is not a rotation and a position'],
+    [`${kIdentity}\n${kIdentity}`, '0\n1.0 2.0', 'time 2 = 1.0 2.0 is not a number'],
   ])('refuses %j with %j', (poses, times, message) => {
     expect(() => tumFromKitti(poses, times)).toThrow(message);
   });
@@ -57,6 +58,17 @@ describe('uploadPlan', () => {
       ['trajectory', 'e.tum'],
     ]);
     expect(await plan[0]?.body.text()).toBe('0.5 4 5 6 0 0 0 1\n');
+  });
+
+  it('reads no whole file that is too large to be poses', async () => {
+    const large = file('00.txt', kIdentity);
+    Object.defineProperty(large, 'size', { value: 2 ** 40 });
+    const times = file('times.txt', '0.5\n');
+    await expect(uploadPlan([times, large])).rejects.toThrow('00.txt: has more than 64 MiB');
+    const video = file('e.mp4', 'x');
+    Object.defineProperty(video, 'size', { value: 2 ** 40 });
+    video.text = () => Promise.reject(new Error('read whole'));
+    expect(await uploadPlan([times, file('00.txt', kIdentity), video])).toHaveLength(2);
   });
 
   it('uploads KITTI poses without times as they are', async () => {

@@ -34,14 +34,14 @@ describe('SweepResults', () => {
     expect(client.tables).toHaveBeenCalledWith('night', { format: 'latex' });
   });
 
-  it('shows published errors beside, for the estimators that are named', async () => {
+  it('shows published errors next to those of the sweep, for the estimators that are named', async () => {
     const { made, client, state } = results();
     await made.readPublished();
     expect(state().published).toEqual(['paper']);
     made.set({ counterparts: ' feature=ORB-SLAM2, dso = DSO ' });
     await made.table('night', 'csv');
     expect(client.tables).toHaveBeenLastCalledWith('night', { format: 'csv' });
-    made.set({ beside: 'paper' });
+    made.set({ publishedName: 'paper' });
     await made.table('night', 'csv');
     expect(client.tables).toHaveBeenLastCalledWith('night', {
       format: 'csv',
