@@ -12,7 +12,7 @@ const kRounds = Number(process.argv[2] ?? 10);
 const kMarks = {
   'first contentful paint': () => performance.getEntriesByName('first-contentful-paint').length > 0,
   'first run listed': () => document.querySelector('.run') !== null,
-  'its plots': () => document.querySelector('[data-panel=plots] .readout')?.textContent !== undefined,
+  'values at its plots': () => /\d/.test(document.querySelector('[data-panel=plots] .readout')?.textContent),
   'its camera image': () => document.querySelector('[data-panel=camera][data-frame]') !== null,
 };
 

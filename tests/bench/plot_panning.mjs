@@ -97,7 +97,10 @@ async function openPlots(dashboard, server, ids) {
   return page.locator('[data-panel=plots] .plot').count();
 }
 
-/** Drags with Shift, to and fro. @return milliseconds from frame to frame, of those that show another part of the flight */
+/**
+ * Drags with Shift, to and fro. @return number of animation frames, milliseconds from frame to frame of those that show
+ * another part of the flight, and seconds that the page's main thread computed
+ */
 async function pan(page, box, seconds) {
   const stroke_px = kStroke * box.width;
   const [left, y] = [box.x + (box.width - stroke_px) / 2, box.y + box.height / 2];
@@ -121,15 +124,24 @@ async function pan(page, box, seconds) {
     };
     requestAnimationFrame(look);
   });
+  const client = await page.context().newCDPSession(page);
+  await client.send('Performance.enable');
+  const processor_s = async () => {
+    const { metrics } = await client.send('Performance.getMetrics');
+    return metrics.find(({ name }) => name === 'TaskDuration').value;
+  };
+  const begin_s = await processor_s();
   const sent = [];
   const begin_ms = performance.now();
   for (let i = 0; performance.now() - begin_ms < 1000 * seconds; i += 1) {
     const phase = ((performance.now() - begin_ms) / 1500) % 2;
-    // Not awaited: a slow page gets the next movement nevertheless.
+    // Not awaited: a slow page gets the next movement anyway.
     sent.push(page.mouse.move(left + stroke_px * (phase < 1 ? phase : 2 - phase), y));
     await pause(kMove_ms);
   }
   await Promise.all(sent);
+  const task_s = (await processor_s()) - begin_s;
+  await client.detach();
   const found = await page.evaluate(() => {
     const { panning } = globalThis;
     globalThis.panning = null;
@@ -137,7 +149,7 @@ async function pan(page, box, seconds) {
   });
   await page.mouse.up();
   await page.keyboard.up('Shift');
-  return found;
+  return { ...found, task_s };
 }
 
 const temporary = makeRunsFolder();
@@ -155,11 +167,12 @@ try {
   for (let i = 0; i < Number(options.zoom); i += 1) await page.mouse.wheel(0, -kNotch_px);
   await page.locator('[data-role=plotted]:not([hidden])').waitFor({ state: 'attached' });
   for (let round = 1; round <= Number(options.rounds); round += 1) {
-    const { all, frames_ms } = await pan(page, box, Number(options.seconds));
+    const { all, frames_ms, task_s } = await pan(page, box, Number(options.seconds));
     const figures = [quantile(frames_ms, 0.5), quantile(frames_ms, 0.95), Math.max(...frames_ms)];
     const [median, p95, longest] = figures.map((value) => `${value.toFixed(1)} ms`);
     console.log(
-      `round ${round}: ${frames_ms.length} of ${all} frames moved; median ${median}, 95 % ${p95}, longest ${longest}; load ${load()}`,
+      `round ${round}: ${frames_ms.length} of ${all} frames moved; median ${median}, 95 % ${p95}, longest ${longest}; ` +
+        `main thread ${((1000 * task_s) / frames_ms.length).toFixed(1)} ms for each; load ${load()}`,
     );
   }
 } finally {

@@ -191,7 +191,11 @@ describe('links', { skip, timeout: 600_000 }, () => {
       }
       // The address is the same again: nothing was lost, nothing was added.
       const parts = (text) => [...new URLSearchParams(text.slice(1))];
-      await other.until(() => location.hash.includes('panels='));
+      // One frame on and back: the page has written the whole address itself.
+      await other.page.keyboard.press('ArrowRight');
+      await other.until((old) => location.hash !== old, hash);
+      await other.page.keyboard.press('ArrowLeft');
+      await other.until((t) => new URLSearchParams(location.hash.slice(1)).get('t') === t, new URLSearchParams(hash.slice(1)).get('t'));
       const again = await other.page.evaluate(() => location.hash);
       assert.deepEqual(parts(again), parts(hash));
     });
@@ -266,6 +270,7 @@ describe('links', { skip, timeout: 600_000 }, () => {
     const { frame } = await dashboard.playback();
     const y_m = columns.y_m[columns.frame.indexOf(frame)].toFixed(1);
     const readouts = page.locator('[data-panel=plots] [data-axis=y_m] .readout');
+    await readouts.nth(2).filter({ hasText: y_m.replace('-', '−') }).waitFor();
     assert.equal((await readouts.allInnerTexts())[2].replace('−', '-'), y_m);
     const { scale: scales } = await dashboard.errors();
     assert.deepEqual(scales.filter((_, i) => i % 3 === 0), [scale('init_scale'), scale('sim3')]);

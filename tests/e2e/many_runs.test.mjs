@@ -85,9 +85,13 @@ describe('a thousand runs', { skip, timeout: 600_000 }, () => {
     assert.equal(both.length, 0, 'only even seeds are lost');
     await page.locator('[data-panel=runs] .panel-empty').filter({ hasText: 'No run' }).waitFor();
     await counted('0 of 1000 runs');
-    await search('seed 4 25 m/s lost');
+    await search('seed:4 "25 m/s" lost');
     await page.locator('.run').first().waitFor();
-    for (const id of await entries()) assert.ok(lost.some((run) => run.id === id));
+    for (const id of await entries()) {
+      const { seed, flight } = lost.find((run) => run.id === id);
+      assert.equal(seed, 4);
+      assert.match(flight, / 25 m\/s/);
+    }
     await search('');
   });
 

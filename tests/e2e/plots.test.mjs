@@ -76,15 +76,19 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     page.locator('[data-role=plotted]').evaluate(({ hidden, style }) =>
       hidden ? null : [Number.parseFloat(style.left), Number.parseFloat(style.width)],
     );
-  /** Acts, and waits until another part is shown. */
+  const frames = () =>
+    page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  /** Acts, and waits until another part is shown and stays. */
   const moved = async (act) => {
     const before = JSON.stringify(await part());
     await act();
+    await frames();
     await dashboard.until((old) => {
       const { hidden, style } = document.querySelector('[data-role=plotted]');
       const now = hidden ? null : [Number.parseFloat(style.left), Number.parseFloat(style.width)];
       return JSON.stringify(now) !== old;
     }, before);
+    await frames();
     return part();
   };
 
@@ -95,7 +99,11 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     const middle = [x + width / 2, y + height / 2];
     await page.mouse.move(...middle);
     for (let i = 0; i < 8; i += 1) await page.mouse.wheel(0, -100);
-    await dashboard.until(() => document.querySelector('[data-role=plotted]').style.width < '40');
+    const zoomed_percent = 100 * Math.exp(-8 * 0.15); // eight notches
+    await dashboard.until((wanted) => {
+      const { hidden, style } = document.querySelector('[data-role=plotted]');
+      return !hidden && Math.abs(Number.parseFloat(style.width) - wanted) < 0.1;
+    }, zoomed_percent);
     const zoomed = await part();
     const { t_ns } = await dashboard.playback();
     await page.keyboard.down('Shift');

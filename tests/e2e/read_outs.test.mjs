@@ -179,12 +179,11 @@ describe('the read-outs of all panels', { skip, timeout: 600_000 }, () => {
     }
     const estimates = [...rows].filter(([label]) => !label.endsWith('truth'));
     for (const column of kErrors) {
-      if (now.errors[column] === undefined) continue;
+      assert.ok(now.errors[column] !== undefined, `${column}, ${at}`);
       for (const [label, row] of estimates) {
         assertShown(numberOf(now.errors[column][label]), row[column], 3, `${column} of ${label}, ${at}`);
       }
     }
-    assert.ok(now.errors.error_m !== undefined && now.errors.error_up_m !== undefined);
 
     const marks = new Map(now.marks.map((text) => /^(\w+ \w+) (.*)$/.exec(text).slice(1)));
     assert.deepEqual([...marks.keys()], [...rows.keys()], at);
@@ -213,8 +212,12 @@ describe('the read-outs of all panels', { skip, timeout: 600_000 }, () => {
     for (const [run, picture] of now.pictures) {
       assert.equal(picture, run === a.id ? frame : frame_b, `picture of ${letters[run]}, ${at}`);
     }
+    // Coded at another quality, it is a little off; the neighbours' are farther.
     const off = await pictureOff(a.id, frame);
-    assert.ok(off < 4, `the picture is ${off} grey levels off that of ${at}`);
+    for (const other of [frame - 1, frame + 1]) {
+      const other_off = await pictureOff(a.id, other);
+      assert.ok(off < other_off, `${off} grey levels off, ${other_off} from frame ${other}, ${at}`);
+    }
   };
 
   for (const alignment of ['init_scale', 'sim3', 'origin']) {

@@ -4,13 +4,12 @@ import type { DriftSpec } from '../../store/plots/drift_specs';
 import { driftAt, nearestLength } from '../../store/plots/drift_specs';
 import type { Size } from '../../store/plots/path_frame';
 import { ticks, tickText } from '../../store/plots/path_frame';
-import { kTop_px, svgTitles } from '../../store/plots/plot_export';
 import type { Pen } from '../../store/plots/svg_pen';
-import { clipped, SvgPen } from '../../store/plots/svg_pen';
 import { curveStyle } from '../colours';
 import { h, perFrame, setAttribute } from '../dom';
 import { paint } from '../paint';
-import type { Drawing } from './path_plot';
+import type { Drawing } from './plot_canvas';
+import { PlotCanvas } from './plot_canvas';
 import { plotTip } from './plot_tip';
 
 const kLeft_px = 48;
@@ -24,13 +23,13 @@ const kMargin = 1.08;
 
 export class DriftPlot {
   readonly root: HTMLElement;
-  private readonly area = h('div', { class: 'path-area' });
-  private readonly canvas = h('canvas', { role: 'img' });
-  private readonly repaintInFrame = perFrame<null>(() => this.paintNow());
+  private readonly plot = new PlotCanvas((pen, size) => this.paintAll(pen, size), {
+    width_px: 2 * kLeft_px,
+    height_px: 2 * kBottom_px,
+  });
 
   constructor(private spec: DriftSpec) {
     const { key, label, unit, hint } = spec;
-    this.area.append(this.canvas);
     this.root = h(
       'div',
       { class: 'plot drift-plot', 'data-axis': key },
@@ -40,12 +39,11 @@ export class DriftPlot {
         h('b', {}, label),
         h('span', { class: 'unit' }, `${unit}, over the length of sub-paths`),
       ),
-      this.area,
+      this.plot.area,
     );
     const point = perFrame<PointerEvent | null>((event) => this.pointAt(event));
-    this.area.addEventListener('pointermove', (event) => point(event));
-    this.area.addEventListener('pointerleave', () => point(null));
-    new ResizeObserver(() => this.repaint()).observe(this.area);
+    this.plot.area.addEventListener('pointermove', (event) => point(event));
+    this.plot.area.addEventListener('pointerleave', () => point(null));
   }
 
   /** Takes the figures as they are now. */
@@ -56,28 +54,18 @@ export class DriftPlot {
       const figures = lengths_m.map((m, i) => `${formatNumber(values[i], digits)} at ${m} m`);
       return `${name} ${figures.join(', ')}`;
     });
-    setAttribute(this.canvas, 'aria-label', `${label} in ${unit}: ${words.join('; ')}`);
+    setAttribute(this.plot.canvas, 'aria-label', `${label} in ${unit}: ${words.join('; ')}`);
     this.repaint();
   }
 
   repaint(): void {
-    this.repaintInFrame(null);
+    this.plot.repaint();
   }
 
   /** As it is shown, drawn into a file. */
   drawing(): Drawing {
     const { label, unit, curves } = this.spec;
-    const { width_px, height_px } = this.size();
-    const pen = new SvgPen();
-    this.paintAll(pen, { width_px, height_px });
-    const names = curves.map(({ name, hue }) => ({ name, colour: paint(curveStyle(hue).colour) }));
-    const titles = svgTitles(kLeft_px, `${label} [${unit}]`, names, paint('var(--text)'));
-    const content = titles + clipped(0, kTop_px, width_px, height_px, pen.content);
-    return { width: width_px, height: height_px + kTop_px, content };
-  }
-
-  private size(): Size {
-    return { width_px: this.area.clientWidth, height_px: this.area.clientHeight };
+    return this.plot.drawing(kLeft_px, `${label} [${unit}]`, curves);
   }
 
   /** The greatest length and value of the axes, which begin at zero. */
@@ -87,18 +75,6 @@ export class DriftPlot {
       length_m: kMargin * Math.max(1, ...curves.flatMap(({ lengths_m }) => lengths_m)),
       value: kMargin * Math.max(least, ...curves.flatMap(({ values }) => values)),
     };
-  }
-
-  private paintNow(): void {
-    const size = this.size();
-    if (size.width_px < 2 * kLeft_px || size.height_px < 2 * kBottom_px) return;
-    const ratio = window.devicePixelRatio;
-    this.canvas.width = Math.round(size.width_px * ratio);
-    this.canvas.height = Math.round(size.height_px * ratio);
-    const pen = this.canvas.getContext('2d');
-    if (pen === null) return;
-    pen.scale(ratio, ratio);
-    this.paintAll(pen, size);
   }
 
   private paintAll(pen: Pen, { width_px, height_px }: Size): void {
@@ -132,8 +108,8 @@ export class DriftPlot {
       return;
     }
     const { curves } = this.spec;
-    const { width_px, height_px } = this.size();
-    const { left, top } = this.area.getBoundingClientRect();
+    const { width_px, height_px } = this.plot.size();
+    const { left, top } = this.plot.area.getBoundingClientRect();
     const ends = this.ends();
     const share = (event.clientX - left - kLeft_px) / (width_px - kLeft_px - kRight_px);
     const length_m = nearestLength(curves, share * ends.length_m);

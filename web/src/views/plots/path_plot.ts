@@ -11,15 +11,15 @@ import {
   toPixels,
   zoomedAt,
 } from '../../store/plots/path_frame';
-import { kTop_px, svgTitles } from '../../store/plots/plot_export';
 import type { Pen } from '../../store/plots/svg_pen';
-import { clipped, SvgPen, svgFile } from '../../store/plots/svg_pen';
 import type { State } from '../../store/state';
 import { hueOf } from '../../store/plots/plot_specs';
 import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
 import { curveStyle } from '../colours';
-import { h, perFrame, setText } from '../dom';
+import { h, setText } from '../dom';
 import { paint } from '../paint';
+import type { Drawing } from './plot_canvas';
+import { PlotCanvas } from './plot_canvas';
 
 const kZoom_per_px = 0.0015;
 const kTickSpace_px = 70;
@@ -42,17 +42,12 @@ export const kPathAxes: readonly PathAxes[] = [
   { key: 'xz', label: 'From the south', hint: 'x east, z up', across: 'x_m', up: 'z_m' },
 ];
 
-/** A part of a file [px]. */
-export interface Drawing {
-  width: number;
-  height: number;
-  content: string;
-}
-
 export class PathPlot {
   readonly root: HTMLElement;
-  private readonly area = h('div', { class: 'path-area' });
-  private readonly canvas = h('canvas', { role: 'img' });
+  private readonly plot = new PlotCanvas((pen, size) => this.paintAll(pen, size), {
+    width_px: 20,
+    height_px: 20,
+  });
   private readonly readout = h('span', { class: 'readout' });
   private paths: readonly Path[] = [];
   private marks: readonly PathMark[] = [];
@@ -65,8 +60,7 @@ export class PathPlot {
     private readonly onSeek: (t_s: number) => void,
   ) {
     const { key, label, hint } = axes;
-    this.canvas.setAttribute('aria-label', `Tracks ${label.toLowerCase()}`);
-    this.area.append(this.canvas);
+    this.plot.canvas.setAttribute('aria-label', `Tracks ${label.toLowerCase()}`);
     this.root = h(
       'div',
       { class: 'plot path-plot', 'data-axis': key },
@@ -77,10 +71,9 @@ export class PathPlot {
         h('span', { class: 'unit' }, `${hint} [m]`),
         this.readout,
       ),
-      this.area,
+      this.plot.area,
     );
     this.steer();
-    new ResizeObserver(() => this.repaint()).observe(this.area);
   }
 
   /** Takes the tracks as they are now. */
@@ -116,14 +109,8 @@ export class PathPlot {
     });
   }
 
-  private readonly repaintInFrame = perFrame<null>(() => this.paintNow());
-
   repaint(): void {
-    this.repaintInFrame(null);
-  }
-
-  private size(): Size {
-    return { width_px: this.area.clientWidth, height_px: this.area.clientHeight };
+    this.plot.repaint();
   }
 
   private box(): Box {
@@ -131,38 +118,13 @@ export class PathPlot {
   }
 
   private frame(): PathFrame {
-    return this.chosen ?? fitted(this.box(), this.size());
-  }
-
-  private paintNow(): void {
-    const size = this.size();
-    if (size.width_px < 20 || size.height_px < 20) return;
-    const ratio = window.devicePixelRatio;
-    this.canvas.width = Math.round(size.width_px * ratio);
-    this.canvas.height = Math.round(size.height_px * ratio);
-    const pen = this.canvas.getContext('2d');
-    if (pen === null) return;
-    pen.scale(ratio, ratio);
-    this.paintAll(pen, size);
+    return this.chosen ?? fitted(this.box(), this.plot.size());
   }
 
   /** As it is shown, drawn into a file: its title, names and tracks. */
   drawing(): Drawing {
-    const { width_px, height_px } = this.size();
-    const pen = new SvgPen();
-    this.paintAll(pen, { width_px, height_px });
     const { label, hint } = this.axes;
-    const names = this.paths.map(({ name, hue }) => ({
-      name,
-      colour: paint(curveStyle(hue).colour),
-    }));
-    return {
-      width: width_px,
-      height: height_px + kTop_px,
-      content:
-        svgTitles(8, `${label}: ${hint} [m]`, names, paint('var(--text)')) +
-        clipped(0, kTop_px, width_px, height_px, pen.content),
-    };
+    return this.plot.drawing(8, `${label}: ${hint} [m]`, this.paths);
   }
 
   private paintAll(pen: Pen, size: Size): void {
@@ -215,7 +177,7 @@ export class PathPlot {
   }
 
   private steer(): void {
-    const { area } = this;
+    const { area } = this.plot;
     let grabbed: { at: [number, number]; moved: boolean } | null = null;
     const at = (event: MouseEvent): [number, number] => {
       const box = area.getBoundingClientRect();
@@ -228,7 +190,7 @@ export class PathPlot {
     });
     area.addEventListener('pointermove', (event) => {
       const here = at(event);
-      const [x, y] = toMetres(this.frame(), this.size(), here);
+      const [x, y] = toMetres(this.frame(), this.plot.size(), here);
       setText(this.readout, `${tickText(x, 0.1)} ${tickText(y, 0.1)}`);
       if (grabbed === null) return;
       const [dx, dy] = [here[0] - grabbed.at[0], here[1] - grabbed.at[1]];
@@ -256,7 +218,7 @@ export class PathPlot {
       (event) => {
         event.preventDefault();
         const factor = Math.exp(event.deltaY * kZoom_per_px);
-        this.chosen = zoomedAt(this.frame(), this.size(), at(event), factor);
+        this.chosen = zoomedAt(this.frame(), this.plot.size(), at(event), factor);
         this.repaint();
       },
       { passive: false },
@@ -266,7 +228,7 @@ export class PathPlot {
   /** Seeks to the time at which a track is nearest to a point of the plot. */
   private seekNear(point: [number, number]): void {
     const frame = this.frame();
-    const size = this.size();
+    const size = this.plot.size();
     let least_px = kNear_px;
     let found: { path: Path; row: number } | null = null;
     for (const path of this.paths) {
@@ -282,17 +244,6 @@ export class PathPlot {
     const { path, row } = found;
     this.onSeek((path.t[row] ?? 0) * path.t_scale_s + path.t_offset_s);
   }
-}
-
-/** A file with drawings from left to right. */
-export function sideBySide(drawings: readonly Drawing[]): string {
-  let left = 0;
-  const parts = drawings.map(({ width, content }) => {
-    left += width;
-    return `<g transform="translate(${left - width} 0)">${content}</g>`;
-  });
-  const height = Math.max(...drawings.map((one) => one.height));
-  return svgFile(left, height, paint('var(--panel)'), parts.join(''));
 }
 
 function paintPath(pen: Pen, { hue, x, y }: Path, frame: PathFrame, size: Size): void {
