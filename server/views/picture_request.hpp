@@ -86,6 +86,7 @@ struct PictureRequest {
   bool live = false;                     ///< use the latest picture if the run is live
   SceneSettings scene;                   ///< kScene
   std::string alignment = "init_scale";  ///< kScene, kError: of the estimates
+  std::string compared;                  ///< kScene: a second alignment, as dashes; empty = none
   TrackLook look{};                      ///< kScene: of the run's tracks
   std::vector<SceneTracks> others;       ///< kScene: other runs whose tracks are shown
   int quality = 75;                      ///< JPEG, in [1, 100]

@@ -9,14 +9,15 @@
 #include "core/measure/processor_time.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/timeline/poses_at.hpp"
 #include "server/timeline/recorded_points.hpp"
 #include "server/timeline/run_timeline.hpp"
 
 namespace overfly::server {
 namespace {
 
-/// Of a viewer's runs, and a few more.
-constexpr std::size_t kMaxRibbons = 20;
+/// Of a viewer's runs, under two alignments, and a few more.
+constexpr std::size_t kMaxRibbons = 40;
 
 Audience::Kind audience_kind(const PictureRequest& request) {
   switch (request.kind) {
@@ -93,7 +94,15 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   renderer::SceneContent content;
   std::vector<PlacedLabel> places;
   const bool onboard = settings.mode == SceneMode::kOnboard;
-  add_run({request.run_id, *timeline, ribbons, row, request.look, Pose{}, onboard},
+  add_run({request.run_id,
+           *timeline,
+           ribbons,
+           compared_ribbons(timeline, request.compared),
+           row.t_ns,
+           row.T_world_body,
+           request.look,
+           Pose{},
+           onboard},
           settings.show,
           &content,
           &places);
@@ -106,7 +115,7 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   }
   const Geodetic origin = tiles.frame().origin();
   for (const SceneTracks& tracks : request.others) {
-    add_tracks(tracks, origin, settings.show, &content, &places);
+    add_tracks(tracks, request.compared, origin, settings.show, &content, &places);
   }
   if (settings.show.image) {
     // Without the image, if there is none: the camera's own picture tells why.
@@ -132,22 +141,26 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
 }
 
 void ViewPainter::add_tracks(const SceneTracks& tracks,
+                             const std::string& compared,
                              const Geodetic& origin,
                              const SceneShow& show,
                              renderer::SceneContent* content,
                              std::vector<PlacedLabel>* places) {
   const auto timeline = runs_.timeline(tracks.run_id);
   if (!timeline) return;
-  const std::int64_t t_ns = tracks.live ? std::numeric_limits<std::int64_t>::max() : tracks.t_ns;
-  const auto row = (*timeline)->frame_at(t_ns);
+  const auto row =
+      (*timeline)->frame_at(tracks.live ? std::numeric_limits<std::int64_t>::max() : tracks.t_ns);
   const std::optional<Geodetic> other_origin = (*timeline)->info().origin;
   if (!row || !other_origin) return;
   ViewRibbons& ribbons = ribbons_of(*timeline, tracks.alignment);
   ribbons.refresh();
+  const std::int64_t t_ns = tracks.live ? row->t_ns : tracks.t_ns;
   add_run({tracks.run_id,
            **timeline,
            ribbons,
-           *row,
+           compared_ribbons(*timeline, compared),
+           t_ns,
+           truth_at(**timeline, *row, t_ns),
            tracks.look,
            T_world_other(origin, *other_origin),
            false},
@@ -173,6 +186,14 @@ std::vector<Eigen::Vector3f> ViewPainter::map_points(const PictureRequest& reque
     all.insert(all.end(), points.begin(), points.end());
   }
   return all;
+}
+
+const ViewRibbons* ViewPainter::compared_ribbons(const std::shared_ptr<RunTimeline>& timeline,
+                                                 const std::string& alignment) {
+  if (alignment.empty()) return nullptr;
+  ViewRibbons& ribbons = ribbons_of(timeline, alignment);
+  ribbons.refresh();
+  return &ribbons;
 }
 
 ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,

@@ -47,8 +47,10 @@ class ViewPainter {
                                     const std::shared_ptr<RunTimeline>& timeline,
                                     const FrameRow& row);
   /// Adds the tracks of another run; nothing while it has no frame.
+  /// @param compared  a second alignment; empty = none
   /// @param origin  of the scene's world frame
   void add_tracks(const SceneTracks& tracks,
+                  const std::string& compared,
                   const Geodetic& origin,
                   const SceneShow& show,
                   renderer::SceneContent* content,
@@ -58,6 +60,9 @@ class ViewPainter {
                                           const RunTimeline& timeline,
                                           const ViewRibbons& ribbons,
                                           const FrameRow& row);
+  /// Null without an alignment.
+  const ViewRibbons* compared_ribbons(const std::shared_ptr<RunTimeline>& timeline,
+                                      const std::string& alignment);
   ViewRibbons& ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
                           const std::string& alignment);
 

@@ -29,6 +29,9 @@ class ViewRibbons {
   [[nodiscard]] std::vector<renderer::Ribbon> until(std::int64_t t_ns,
                                                     const Pose& T_world_body_now,
                                                     const TrackLook& look) const;
+  /// Dashes of each shown estimate's tracked pieces up to t, without the truth.
+  [[nodiscard]] std::vector<renderer::Ribbon> dashes_until(std::int64_t t_ns,
+                                                           const TrackLook& look) const;
   /// Lines from the truth to each estimate along the path up to t, at most `most` of each estimate
   /// at equal intervals of time.
   [[nodiscard]] std::vector<renderer::SceneContent::Line> errors_until(std::int64_t t_ns,
@@ -38,9 +41,6 @@ class ViewRibbons {
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
   [[nodiscard]] const std::string& alignment() const { return alignment_; }
-  /// Pose of an estimate's row under the alignment; empty while not tracking.
-  [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
-                                                 const EstimateRow& row) const;
   /// Empty if the estimate has no such alignment.
   [[nodiscard]] const std::optional<RowAlignment>& alignment_of(std::size_t estimator) const {
     return estimates_.at(estimator).alignment;
@@ -61,6 +61,9 @@ class ViewRibbons {
   };
   /// Position of the truth between the recorded poses; empty outside of them.
   [[nodiscard]] std::optional<Eigen::Vector3d> truth_at(std::int64_t t_ns) const;
+  /// Pose of an estimate's row under the alignment; empty while not tracking.
+  [[nodiscard]] std::optional<Pose> T_world_body(std::size_t estimator,
+                                                 const EstimateRow& row) const;
   void refresh_truth();
   void refresh_estimate(std::size_t estimator);
 

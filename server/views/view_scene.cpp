@@ -5,6 +5,7 @@
 #include "core/earth/geodesy.hpp"
 #include "renderer/ground/ground_ray.hpp"
 #include "renderer/viewpoint.hpp"
+#include "server/timeline/poses_at.hpp"
 
 namespace overfly::server {
 namespace {
@@ -81,7 +82,7 @@ void add_run(const SceneRun& run,
              const SceneShow& show,
              renderer::SceneContent* content,
              std::vector<PlacedLabel>* places) {
-  const Eigen::Vector3d p_truth = run.T_scene_world * run.row.T_world_body.translation;
+  const Eigen::Vector3d p_truth = run.T_scene_world * run.T_world_body.translation;
   // From its aircraft, what coincides with it would fill the view.
   const auto hides_view = [&](const Pose& T_scene_body) {
     constexpr double kNearM = 15.0;
@@ -90,7 +91,7 @@ void add_run(const SceneRun& run,
   const bool shows_truth = run.look.shows("") && !run.seen_from;
   if (show.aircraft && shows_truth) {
     renderer::SceneContent::Aircraft truth;
-    truth.T_world_body = run.T_scene_world * run.row.T_world_body;
+    truth.T_world_body = run.T_scene_world * run.T_world_body;
     truth.rgb = run.look.truth_rgb();
     content->aircraft.push_back(truth);
   }
@@ -98,9 +99,8 @@ void add_run(const SceneRun& run,
   const auto& names = run.timeline.estimators();
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!run.look.shows(names[i])) continue;
-    const auto estimate = run.timeline.estimate_at(i, run.row.t_ns);
     const auto T_world_body =
-        estimate ? run.ribbons.T_world_body(i, *estimate) : std::optional<Pose>();
+        estimate_at(run.timeline, i, run.ribbons.alignment_of(i), run.t_ns).T_world_body;
     if (!T_world_body) continue;
     const Pose T_scene_body = run.T_scene_world * *T_world_body;
     const TrackRgb rgb = run.look.rgb_of(names[i], i);
@@ -115,18 +115,21 @@ void add_run(const SceneRun& run,
     const double error_m = (T_scene_body.translation - p_truth).norm();
     places->push_back({{run.run_id, names[i], 0.0, 0.0, 0.0, error_m}, T_scene_body.translation});
   }
-  if (show.ribbons) {
-    for (renderer::Ribbon& ribbon :
-         run.ribbons.until(run.row.t_ns, run.row.T_world_body, run.look)) {
+  const auto add_ribbons = [&](std::vector<renderer::Ribbon> ribbons) {
+    for (renderer::Ribbon& ribbon : ribbons) {
       std::vector<Pose>& poses = ribbon.T_world_body;
       for (Pose& pose : poses) pose = run.T_scene_world * pose;
       while (!poses.empty() && hides_view(poses.back())) poses.pop_back();
       if (poses.size() > 1) content->ribbons.push_back(std::move(ribbon));
     }
+  };
+  if (show.ribbons) {
+    add_ribbons(run.ribbons.until(run.t_ns, run.T_world_body, run.look));
+    if (run.compared != nullptr) add_ribbons(run.compared->dashes_until(run.t_ns, run.look));
   }
   if (show.error_history) {
     constexpr std::size_t kMostLines = 400;
-    for (auto line : run.ribbons.errors_until(run.row.t_ns, run.look, kMostLines)) {
+    for (auto line : run.ribbons.errors_until(run.t_ns, run.look, kMostLines)) {
       line.from_world = run.T_scene_world * line.from_world;
       line.to_world = run.T_scene_world * line.to_world;
       content->lines.push_back(line);

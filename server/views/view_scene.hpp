@@ -39,7 +39,9 @@ struct SceneRun {
   std::string run_id;
   const RunTimeline& timeline;
   const ViewRibbons& ribbons;
-  FrameRow row;  ///< at the instant
+  const ViewRibbons* compared;  ///< under a second alignment, drawn as dashes; null = none
+  std::int64_t t_ns;            ///< of the run
+  Pose T_world_body;            ///< the true one at this time
   TrackLook look;
   Pose T_scene_world;      ///< its world frame in that of the scene
   bool seen_from = false;  ///< the viewpoint is in its aircraft, which is therefore not shown

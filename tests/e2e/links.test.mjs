@@ -278,6 +278,19 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await page.locator('.tab[data-group=path]').click();
     await page.locator('.path-plot').first().waitFor();
     await dashboard.screenshot('compared_paths_1600x900');
+    await page.locator('.dv-tab', { hasText: /^3D view$/ }).click();
+    await page.getByRole('button', { name: 'Show flat' }).click();
+    await page.getByRole('button', { name: 'Show drifts' }).click();
+    await dashboard.untilStill('scene');
+    const names = await page.locator('[data-panel=scene] .legend span').allInnerTexts();
+    assert.ok(names.some((name) => name.startsWith('flat by sim3, scale ')), `${names}`);
+    const both = await dashboard.picture('scene');
+    await dashboard.screenshot('compared_scene_1600x900');
+    await page.locator('#compared').selectOption('');
+    await dashboard.untilPictureDiffers('scene', both.digest);
+    await page.locator('#compared').selectOption('sim3');
+    await page.getByRole('button', { name: 'Show flat' }).click();
+    await page.getByRole('button', { name: 'Show drifts' }).click();
     await untilWritten('compare');
     await elsewhere(await page.evaluate(() => location.hash), async (other) => {
       await other.page.locator('[data-panel=plots] .alignment-legend').waitFor();

@@ -11,7 +11,7 @@ namespace overfly::net {
 struct PictureKey {
   std::int64_t frame = -1;
   std::uint64_t change = 0;  ///< increases with each seek, subscription and change of the view
-  std::int64_t others = 0;   ///< sum of the frames of other runs that it shows
+  std::int64_t others = 0;   ///< sum of the times of other runs that it shows
   bool full = false;         ///< again with all details, after a reduced one that moved
   bool operator==(const PictureKey&) const = default;
 };

@@ -88,6 +88,7 @@ std::optional<PictureRequest> PictureStreams::request_of(const Stream& stream,
     const auto view = views_.find(stream.request.view);
     if (view != views_.end()) request.scene = view->second.settings;
     request.look = stream.request.look;
+    request.compared = stream.request.compared;
   }
   if (const std::string name = estimator_of(stream.request.name); !name.empty()) {
     const auto& names = instant.timeline->estimators();
@@ -108,17 +109,19 @@ const PictureStreams::Instant* PictureStreams::find_instant(const std::vector<In
 }
 
 std::int64_t PictureStreams::add_others(const Stream& stream,
+                                        const Instant& main,
                                         const std::vector<Instant>& instants,
                                         PictureRequest* request) {
-  std::int64_t frames = 0;
+  std::int64_t times_ns = 0;
+  const std::int64_t since_frame_ns = main.at_end ? 0 : main.at_ns - main.t_ns;
   for (const SceneRun& run : stream.request.with) {
     const Instant* other = find_instant(instants, run.run_id);
     if (other == nullptr || other->run_id == stream.request.run_id) continue;
-    request->others.push_back(
-        {other->run_id, other->t_ns, other->live, other->alignment, run.look});
-    frames += other->frame;
+    const std::int64_t t_ns = other->live ? other->t_ns : other->at_ns - since_frame_ns;
+    request->others.push_back({other->run_id, t_ns, other->live, other->alignment, run.look});
+    times_ns += t_ns;
   }
-  return frames;
+  return times_ns;
 }
 
 bool PictureStreams::view_moves(const Stream& stream, std::int64_t now_ns) const {
@@ -187,7 +190,7 @@ bool PictureStreams::request_one(Stream* stream,
   if (instant == nullptr) return false;
   auto request = request_of(*stream, *instant);
   if (!request) return false;
-  const std::int64_t others = add_others(*stream, instants, &*request);
+  const std::int64_t others = add_others(*stream, *instant, instants, &*request);
   if (stream->slot.window_full() && now_ns - stream->requested_ns > SendWindow::kArrivedByNs) {
     // Its pictures were lost, or the client does not report them.
     stream->shown = stream->sequence - 1;

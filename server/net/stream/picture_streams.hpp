@@ -31,7 +31,9 @@ class PictureStreams {
     const server::RunTimeline* timeline;
     std::string run_id;
     std::int64_t frame = 0;
-    std::int64_t t_ns = 0;
+    std::int64_t t_ns = 0;   ///< of the frame
+    std::int64_t at_ns = 0;  ///< of the run, by the clock
+    bool at_end = false;     ///< there is no later frame
     bool live = false;
     std::string alignment = server::kRecordedAlignment;  ///< of the estimates in scenes
   };
@@ -128,8 +130,10 @@ class PictureStreams {
   static bool preview_stands(const Stream& stream, std::int64_t now_ns);
   [[nodiscard]] bool view_moves(const Stream& stream, std::int64_t now_ns) const;
   static void count_unshown(Stream* stream);
-  /// Adds the other runs that a scene shows. @return the sum of their frames
+  /// Adds the other runs that a scene shows, at the time of the main run's frame.
+  /// @return the sum of their times
   static std::int64_t add_others(const Stream& stream,
+                                 const Instant& main,
                                  const std::vector<Instant>& instants,
                                  server::PictureRequest* request);
   static const Instant* find_instant(const std::vector<Instant>& instants,

@@ -141,8 +141,9 @@ Result<StreamRequest> read_stream(const json& entry, const std::string& where) {
   }
   stream.look = read_look(&fields);
   stream.with = read_with(&fields);
+  stream.compared = read_name(&fields, "compared");
   if (stream.name != "scene") {
-    for (const char* name : {"first_colour", "hide", "colours", "with"}) {
+    for (const char* name : {"first_colour", "hide", "colours", "with", "compared"}) {
       if (entry.contains(name)) fields.reject(name, ": applies only to the stream \"scene\"");
     }
   }

@@ -29,6 +29,7 @@ struct StreamRequest {
   std::string view = {};            ///< for the stream "scene": the name of its view
   server::TrackLook look{};         ///< likewise: of the run's tracks
   std::vector<SceneRun> with = {};  ///< likewise: other runs whose tracks it shows
+  std::string compared = {};        ///< likewise: a second alignment of all estimates
   bool operator==(const StreamRequest&) const = default;
 };
 

@@ -329,11 +329,19 @@ void Viewer::send_playback(std::int64_t now_ns) {
 void Viewer::pump_pictures(std::int64_t now_ns) {
   std::vector<PictureStreams::Instant> instants;
   for (const auto& watch : watches_) {
-    const auto row = watch->timeline().frame_at(watch->run_t_ns(clock_.t_ns()));
+    const std::int64_t at_ns = watch->run_t_ns(clock_.t_ns());
+    const auto row = watch->timeline().frame_at(at_ns);
     if (!row) continue;
     const bool live = clock_.live() && watch->flying();
-    instants.push_back(
-        {&watch->timeline(), watch->run_id(), row->frame, row->t_ns, live, watch->alignment()});
+    const bool at_end = row->t_ns >= end_of(watch->timeline());
+    instants.push_back({&watch->timeline(),
+                        watch->run_id(),
+                        row->frame,
+                        row->t_ns,
+                        at_ns,
+                        at_end,
+                        live,
+                        watch->alignment()});
   }
   pictures_.pump(instants, clock_.playing(), &port_, now_ns);
 }

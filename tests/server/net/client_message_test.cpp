@@ -154,6 +154,8 @@ TEST(ClientMessage, RefusesWrongOtherRuns) {
   };
   EXPECT_THAT(error_of(R"("name":"camera","with":[{"run":"q"}])"), HasSubstr("only to the stream"));
   EXPECT_THAT(error_of(R"("name":"camera","first_colour":1)"), HasSubstr("only to the stream"));
+  EXPECT_THAT(error_of(R"("name":"camera","compared":"sim3")"), HasSubstr("only to the stream"));
+  EXPECT_THAT(error_of(R"("name":"scene","compared":3)"), HasSubstr("compared"));
   EXPECT_THAT(error_of(R"("name":"depth","hide":["a"])"), HasSubstr("only to the stream"));
   EXPECT_THAT(error_of(R"("name":"scene","first_colour":-1)"), HasSubstr("first_colour"));
   EXPECT_THAT(error_of(R"("name":"scene","with":[7])"), HasSubstr("with.0"));

@@ -134,6 +134,29 @@ TEST_F(ViewerTest, AsksForScenesWithOtherRuns) {
   EXPECT_TRUE(request.others[0].look.shows("q"));
 }
 
+/// Between its frames the scene shows the main run's last one, and the other run when that was
+/// taken; after the main run's end the other one goes on.
+TEST_F(ViewerTest, AsksForOtherRunsBetweenTheirFrames) {
+  timeline_->append_frame(frame_row(1, 1'000'000'000));
+  timeline_->append_frame(frame_row(2, 2'000'000'000));
+  const json scene = {
+      {"run", "r"}, {"name", "scene"}, {"with", {{{"run", "q"}}}}, {"compared", "sim3"}};
+  command({{"type", "watch"}, {"run", "r"}, {"request", 1}});
+  command({{"type", "watch"}, {"run", "q"}, {"offset_ns", -250'000'000}, {"request", 2}});
+  command({{"type", "subscribe"}, {"pictures", {scene}}, {"request", 3}});
+  command({{"type", "seek"}, {"t_ns", 1'600'000'000}, {"request", 4}});
+  drawn_alignment();
+  ASSERT_FALSE(port_.drawn.empty());
+  EXPECT_EQ(port_.drawn.back().second.t_ns, 1'000'000'000);
+  EXPECT_EQ(port_.drawn.back().second.others.at(0).t_ns, 1'250'000'000);
+  EXPECT_EQ(port_.drawn.back().second.compared, "sim3");
+  command({{"type", "watch"}, {"run", "q"}, {"offset_ns", 1'500'000'000}, {"request", 5}});
+  command({{"type", "seek"}, {"t_ns", 3'100'000'000}, {"request", 6}});
+  drawn_alignment();
+  EXPECT_EQ(port_.drawn.back().second.t_ns, 2'000'000'000);
+  EXPECT_EQ(port_.drawn.back().second.others.at(0).t_ns, 1'600'000'000);
+}
+
 /// A run that has ended, of 100 frames.
 std::shared_ptr<server::RunTimeline> flown_run() {
   server::RunInfo info;

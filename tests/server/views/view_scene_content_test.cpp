@@ -75,6 +75,12 @@ class ViewSceneContentTest : public testing::ManagerTest {
          nlohmann::json::parse(R"([{"name":"d","type":"drifting","parameters":{"drift":0.2}}])")}};
   }
 
+  static std::string fly_drifting(RunManager& runs) {
+    const std::string id = runs.start("small", drifting()).value().id;
+    wait_for_end(runs, id);
+    return id;
+  }
+
   static PictureRequest scene_of(const std::string& id, std::int64_t frame) {
     PictureRequest request;
     request.run_id = id;
@@ -117,6 +123,56 @@ TEST_F(ViewSceneContentTest, HasTheTracksOfOtherRunsAtTheirOwnTimes) {
       1.0);
   EXPECT_EQ(shared.ribbons.size(), 2 * alone.ribbons.size());
   EXPECT_EQ(shared.points.size(), alone.points.size()) << "of the main run only";
+}
+
+/// As `playback` has them at the same time: the read-outs and the view agree.
+TEST_F(ViewSceneContentTest, HasOtherRunsBetweenTheirFrames) {
+  const auto runs = watched_runs();
+  const std::string id = fly_drifting(*runs);
+  const std::string other = fly_drifting(*runs);
+  PictureRequest request = scene_of(id, 9);
+  const auto at = [&](std::int64_t t_ns) {
+    request.others = {{other, t_ns, false, "init_scale", {}}};
+    const auto& aircraft = drawn(*runs, request).aircraft;
+    EXPECT_EQ(aircraft.size(), 4U);
+    return std::pair(aircraft.at(2).T_world_body, aircraft.at(3).T_world_body);
+  };
+  const auto [truth_before, estimate_before] = at(400'000'000);
+  const auto [truth_after, estimate_after] = at(500'000'000);
+  const auto [truth, estimate] = at(425'000'000);
+  const Pose expected = interpolate(truth_before, truth_after, 0.25);
+  EXPECT_LT((truth.translation - expected.translation).norm(), 1e-6);
+  EXPECT_LT(truth.rotation.angularDistance(expected.rotation), 1e-9);
+  const Pose expected_estimate = interpolate(estimate_before, estimate_after, 0.25);
+  EXPECT_LT((estimate.translation - expected_estimate.translation).norm(), 1e-6);
+  EXPECT_GT((estimate.translation - estimate_before.translation).norm(), 0.1);
+}
+
+/// Dashes along the track under the second alignment, in the colour of the estimate.
+TEST_F(ViewSceneContentTest, HasASecondAlignmentAsDashes) {
+  const auto runs = watched_runs();
+  const std::string id = fly_drifting(*runs);
+  PictureRequest request = scene_of(id, 1000);
+  const std::size_t alone = drawn(*runs, request).ribbons.size();
+  ASSERT_EQ(alone, 2U);
+  request.compared = "sim3";
+  const auto ribbons = drawn(*runs, request).ribbons;
+  ASSERT_GT(ribbons.size(), alone);
+  request.compared.clear();
+  request.alignment = "sim3";
+  const renderer::Ribbon whole = drawn(*runs, request).ribbons.at(1);
+  for (std::size_t i = alone; i < ribbons.size(); ++i) {
+    const auto& dash = ribbons[i].T_world_body;
+    EXPECT_EQ(ribbons[i].rgb, estimator_rgb(0));
+    EXPECT_EQ(ribbons[i].wing_span_m, whole.wing_span_m);
+    ASSERT_EQ(dash.size(), std::min<std::size_t>(11, whole.T_world_body.size() - 15 * (i - alone)));
+    EXPECT_LT(
+        (dash.front().translation - whole.T_world_body.at(15 * (i - alone)).translation).norm(),
+        1e-9);
+  }
+  request.alignment = "init_scale";
+  request.compared = "unknown";
+  EXPECT_EQ(drawn(*runs, request).ribbons.size(), alone);
 }
 
 TEST_F(ViewSceneContentTest, LeavesOutHiddenTracksAndTakesTheirColours) {
@@ -180,8 +236,7 @@ TEST_F(ViewSceneContentTest, HasTheMapPointsRecordedLast) {
 
 TEST_F(ViewSceneContentTest, HasOnlyThePartsThatAreShown) {
   const auto runs = watched_runs();
-  const std::string id = runs->start("small", drifting()).value().id;
-  wait_for_end(*runs, id);
+  const std::string id = fly_drifting(*runs);
   PictureRequest request = scene_of(id, 15);
   const renderer::SceneContent usual = drawn(*runs, request);
   EXPECT_EQ(usual.aircraft.size(), 2U);
@@ -214,8 +269,7 @@ TEST_F(ViewSceneContentTest, HasOnlyThePartsThatAreShown) {
 
 TEST_F(ViewSceneContentTest, TellsWhereTheAircraftAre) {
   const auto runs = watched_runs();
-  const std::string id = runs->start("small", drifting()).value().id;
-  wait_for_end(*runs, id);
+  const std::string id = fly_drifting(*runs);
   PictureRequest request = scene_of(id, 15);
   request.scene.mode = SceneMode::kTop;
   request.scene.distance_m = 300.0;

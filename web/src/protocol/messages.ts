@@ -63,6 +63,8 @@ export interface PictureStream {
   colours?: Record<string, string>;
   /** Of a scene: other runs whose tracks it shows. */
   with?: SceneTracks[];
+  /** Of a scene: a second alignment of all estimates, drawn as dashes. */
+  compared?: string;
 }
 
 /** The tracks of a run in a scene. */

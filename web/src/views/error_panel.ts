@@ -88,7 +88,7 @@ export class ErrorPanel implements View {
     ]);
     this.compared.value = state.compared ?? '';
     this.compared.disabled = modes.length === 0;
-    this.compared.title = 'A second alignment next to the first: dashed in the plots';
+    this.compared.title = 'A second alignment next to the first: dashed in plots and 3D view';
     this.alignment.disabled = modes.length === 0;
     const drawn = state.watched.some(({ metrics }) => canBeDrawn(metrics, state.alignment));
     this.alignment.title = drawn

@@ -4,12 +4,11 @@ import { kPanels } from '../../store/layouts/panel_names';
 import { bodyAxes } from '../../store/plot3d/attitude';
 import { boxOfAll } from '../../store/plot3d/axis_box';
 import type { Size } from '../../store/plots/path_frame';
-import { hueOf } from '../../store/plots/plot_specs';
 import { tracksCsv } from '../../store/plots/track_files';
 import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
-import { scaleText } from '../alignment_legend';
+import { legendEntries, legendLine } from '../alignment_legend';
 import { curveStyle, trackColour } from '../colours';
 import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
@@ -126,15 +125,9 @@ export class Plot3dPanel implements View {
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
     const estimates = shown.some(({ name }) => name !== '');
     const labels = shown.map(({ label }) => label);
-    const named = shown.map((track) => ({
-      name: `${track.label}${scaleText(track, state.compared)}`,
-      ...curveStyle(hueOf(track)),
-    }));
+    const named = legendEntries(shown, state.compared);
     rebuild(this.legend, JSON.stringify([alignment, named]), () => [
-      ...named.map(({ name, colour, dash }) => {
-        const dashed = dash.length > 0 ? 'dashed' : '';
-        return h('span', {}, h('i', { class: dashed, style: `color:${colour}` }), name);
-      }),
+      ...named.map(legendLine),
       ...(estimates ? [h('span', { class: 'alignment-note' }, `by ${alignment}`)] : []),
     ]);
     setAttribute(

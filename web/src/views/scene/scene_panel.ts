@@ -3,8 +3,8 @@ import { formatNumber } from '../../store/format';
 import { kNoRate } from '../../store/pictures/picture_rates';
 import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
-import { shownTracks } from '../../store/tracks';
-import { trackColour } from '../colours';
+import { drawnTracks } from '../../store/tracks';
+import { legendEntries, legendLine } from '../alignment_legend';
 import { h, perFrame, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
@@ -46,7 +46,10 @@ export class ScenePanel implements View {
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
     if (changed.has('scene') || changed.has('run')) this.updateControls();
-    if (changed.has('run')) this.context.session.want('scene', sceneWish(state));
+    // The second alignment comes and goes with the scores.
+    if (changed.has('run') || changed.has('metrics')) {
+      this.context.session.want('scene', sceneWish(state));
+    }
     if (!changed.has('pictures') && !changed.has('playback') && !changed.has('run')) return;
     const picture = state.pictures.get('scene') ?? null;
     this.picture.show(picture);
@@ -72,11 +75,15 @@ export class ScenePanel implements View {
     const place = [eye.x_m, eye.y_m, eye.z_m].map((value) => formatNumber(value, 0)).join(' ');
     const far = mode === 'free' ? ` · ${place} m` : ` · ${formatNumber(distance_m, 0)} m`;
     setText(this.readout, angles + (mode === 'onboard' ? '' : far));
-    const tracks = shownTracks(state);
+    const tracks = drawnTracks(state);
     const alignment = [...new Set(state.watched.map(shownAlignment))].join(', ');
-    const entries = tracks.map((track) => [track.label, trackColour(track)] as const);
+    // Unlike curves, ribbons are never dashed to repeat a colour.
+    const entries = legendEntries(tracks, state.compared).map((entry, i) => ({
+      ...entry,
+      dashed: tracks[i]?.by !== undefined,
+    }));
     rebuild(this.legend, JSON.stringify([state.runId, alignment, entries]), () => [
-      ...entries.map(([label, colour]) => legendEntry(label, colour)),
+      ...entries.map(legendLine),
       ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
     ]);
   }
@@ -100,10 +107,6 @@ export class ScenePanel implements View {
       timer = window.setTimeout(() => ask({ width, height }), asked === '' ? 0 : kResizeWait_ms);
     }).observe(area);
   }
-}
-
-function legendEntry(name: string, colour: string): HTMLElement {
-  return h('span', {}, h('i', { style: `background:${colour}` }), name);
 }
 
 function even(value: number, [low, high]: readonly [number, number]): number {

@@ -33,6 +33,7 @@ export function sceneWish(state: State): PictureStream[] {
       ...(hide === undefined ? {} : { hide }),
       ...(colours === undefined ? {} : { colours }),
       ...(others.length === 0 ? {} : { with: others }),
+      ...(state.compared === null ? {} : { compared: state.compared }),
     },
   ];
 }

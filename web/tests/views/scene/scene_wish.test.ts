@@ -30,6 +30,14 @@ describe('the picture of the 3D view', () => {
     ]);
   });
 
+  it('has the alignment that is compared with the first', () => {
+    const viewing = new Viewing();
+    viewing.watch();
+    expect(sceneWish(viewing.store.state)[0]).not.toHaveProperty('compared');
+    viewing.store.state.compared = 'sim3';
+    expect(sceneWish(viewing.store.state)[0]?.compared).toBe('sim3');
+  });
+
   it('has the colours that the viewer chose', () => {
     const viewing = new Viewing();
     viewing.watch();
