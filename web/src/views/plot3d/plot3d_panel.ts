@@ -9,7 +9,7 @@ import type { State, Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { tracksOf } from '../../store/tracks';
 import { legendEntries, legendLine } from '../alignment_legend';
-import { curveStyle, trackColour } from '../colours';
+import { trackColour } from '../colours';
 import { h, perFrame, rebuild, setAttribute } from '../dom';
 import { paint } from '../paint';
 import type { Panel } from '../panel';
