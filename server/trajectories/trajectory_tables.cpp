@@ -10,7 +10,7 @@
 
 #include "core/measure/bounded_series.hpp"
 #include "core/time.hpp"
-#include "evaluation/scale_drift.hpp"
+#include "evaluation/window_errors.hpp"
 
 namespace overfly::server {
 namespace {
@@ -92,15 +92,20 @@ Json error_tables(const FileScore& score,
   BoundedSeries by_axis = series_of(3, points);
   BoundedSeries sizes = series_of(rotations ? 2 : 1, points);
   BoundedSeries scale = series_of(1, points);
-  std::vector<std::optional<evaluation::ScalePlace>> places;
+  BoundedSeries relative = series_of(2, points);
+  std::vector<std::optional<evaluation::PosePair>> pairs;
   for (std::size_t i = 0; i < score.matches.size(); ++i) {
     const std::int64_t t_ns = score.matches[i].t_ns;
     const Pose T_world_pose = alignment.S_world_vo * score.matches[i].T_vo_camera;
     poses.add(t_ns, T_world_pose);
-    places.push_back(evaluation::ScalePlace{
-        0, score.matches[i].T_world_camera.translation, T_world_pose.translation});
-    if (const auto error = evaluation::scale_error_at(places, i)) {
+    pairs.push_back(evaluation::PosePair{0, score.matches[i].T_world_camera, T_world_pose});
+    if (const auto error = evaluation::scale_error_at(pairs, i)) {
       add_if_finite(scale, {t_ns, {100.0 * *error, 0.0, 0.0}});
+    }
+    if (const auto error = evaluation::relative_error_at(pairs, i)) {
+      const double rotation_rad = evaluation::kErrorWindow_m * error->rotation_rad_m;
+      add_if_finite(relative,
+                    {t_ns, {100.0 * error->translation, deg_from_rad(rotation_rad), 0.0}});
     }
     add_if_finite(by_axis, {t_ns, {axes[i].along_m, axes[i].across_m, axes[i].up_m}});
     add_if_finite(sizes,
@@ -114,6 +119,7 @@ Json error_tables(const FileScore& score,
   tables["errors"] = rotations ? columns_of_series(sizes, {"position_m", "rotation_deg"})
                                : columns_of_series(sizes, {"position_m"});
   tables["scale"] = columns_of_series(scale, {"scale_percent"});
+  tables["relative"] = columns_of_series(relative, {"relative_percent", "relative_deg"});
   return tables;
 }
 

@@ -7,7 +7,7 @@
 
 #include "server/record/rows/vehicle_rows.hpp"
 #include "server/timeline/estimate_errors.hpp"
-#include "server/timeline/scale_errors.hpp"
+#include "server/timeline/window_errors.hpp"
 
 namespace overfly::net {
 namespace {
@@ -131,6 +131,28 @@ void add_honesty_columns(const std::vector<std::optional<server::EstimateError>>
   add("nees_high", [&](const Error& /*error*/) { return band.high; });
 }
 
+void add_window_columns(const std::vector<server::WindowErrors>& errors, json* columns) {
+  using Errors = server::WindowErrors;
+  using Relative = evaluation::RelativeErrorAt;
+  const auto add = [&](const char* name, auto value_of) {
+    (*columns)[name] = column(errors, [&](const Errors& error) {
+      const std::optional<double> value = value_of(error);
+      return value ? rounded(*value, 1e6) : json(nullptr);
+    });
+  };
+  const auto add_relative = [&](const char* name, double factor, double Relative::*member) {
+    add(name, [&](const Errors& error) {
+      return error.relative ? std::optional(factor * (*error.relative).*member) : std::nullopt;
+    });
+  };
+  add("error_scale_percent", [](const Errors& error) {
+    return error.scale ? std::optional(100.0 * *error.scale) : std::nullopt;
+  });
+  add_relative("error_relative_percent", 100.0, &Relative::translation);
+  add_relative(
+      "error_relative_deg", deg_from_rad(evaluation::kErrorWindow_m), &Relative::rotation_rad_m);
+}
+
 /// Null for a value that JSON cannot represent.
 json json_number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
@@ -176,11 +198,7 @@ json estimate_columns(const server::RunTimeline& timeline,
   const auto errors = server::errors_of(timeline, estimator, rows, alignment);
   add_error_columns(errors, &columns);
   add_honesty_columns(errors, &columns);
-  columns["error_scale_percent"] =
-      column(server::scale_errors_of(timeline, estimator, rows, alignment),
-             [](const std::optional<double>& error) {
-               return error ? rounded(100.0 * *error, 1e6) : json(nullptr);
-             });
+  add_window_columns(server::window_errors_of(timeline, estimator, rows, alignment), &columns);
   const std::vector<std::string> counters = timeline.counter_names(estimator);
   for (std::size_t i = 0; i < counters.size(); ++i) {
     columns[counter_column(counters[i])] = column(rows, [&](const Row& row) {

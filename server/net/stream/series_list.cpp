@@ -43,6 +43,8 @@ constexpr Series kEstimate[] = {
     {"error_up_m", "error up", "m", "position_error_parts"},
     {"error_rotation_deg", "rotation error", "deg", "rotation_error"},
     {"error_scale_percent", "scale error over 100 m", "%", "scale_error"},
+    {"error_relative_percent", "relative error over 100 m", "%", "relative_error"},
+    {"error_relative_deg", "relative rotation over 100 m", "deg", "relative_rotation_error"},
     {"latency_ms", "latency", "ms", "latency"}};
 
 constexpr Series kHonesty[] = {{"nees_position", "NEES of the position", "", "nees"},

@@ -59,7 +59,7 @@ export interface ScoredEstimate {
   offsets?: ScoredOffsets;
   series?: Record<
     string,
-    PoseSeries & { axis_errors: SeriesTable; errors: SeriesTable; scale: SeriesTable }
+    PoseSeries & Record<'axis_errors' | 'errors' | 'scale' | 'relative', SeriesTable>
   >;
   /** Why it could not be read or matched. */
   error?: { code: string; message: string };

@@ -89,6 +89,16 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
     least: 0.1,
     hint: 'Estimated distance over the last 100 m against the true one: drift of the scale',
   },
+  error_relative_percent: {
+    digits: 3,
+    least: 0.1,
+    hint: 'Position error over the last 100 m of the path, in % of them',
+  },
+  error_relative_deg: {
+    digits: 3,
+    least: 0.1,
+    hint: 'Rotation error over the last 100 m of the path',
+  },
   latency_ms: { digits: 1, least: 5, hint: 'From the frame to its answer' },
 };
 

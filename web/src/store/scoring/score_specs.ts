@@ -21,6 +21,18 @@ const kErrors = [
   { table: 'axis_errors', column: 'up_m', label: 'Error up', unit: 'm' },
   { table: 'errors', column: 'rotation_deg', label: 'Rotation error', unit: 'deg' },
   { table: 'scale', column: 'scale_percent', label: 'Scale error over the last 100 m', unit: '%' },
+  {
+    table: 'relative',
+    column: 'relative_percent',
+    label: 'Relative error over the last 100 m',
+    unit: '%',
+  },
+  {
+    table: 'relative',
+    column: 'relative_deg',
+    label: 'Relative rotation over the last 100 m',
+    unit: 'deg',
+  },
 ] as const;
 
 export type ScoreGroup = 'pose' | 'path' | 'errors' | 'drift';
@@ -46,9 +58,9 @@ export function scoreSpecs(evaluation: Evaluation, mode: string, group: ScoreGro
       return plot(axis, kAxisLabels[axis], angle ? 'deg' : 'm', angle ? 2 : 1, [first, ...curves]);
     });
   }
-  // Short flights have no scale over 100 m.
-  const hasValues = (table: 'errors' | 'axis_errors' | 'scale') =>
-    table !== 'scale' || own.some(({ tables }) => (tables.scale.t_s ?? []).length > 0);
+  // Short flights have no errors over 100 m.
+  const hasValues = (table: (typeof kErrors)[number]['table']) =>
+    own.length === 0 || own.some(({ tables }) => (tables[table].t_s ?? []).length > 0);
   return kErrors
     .filter(({ table }) => hasValues(table))
     .map(({ table, column, label, unit }) =>

@@ -35,6 +35,7 @@ const evaluation: Evaluation = {
           errors: table({ position_m: [0.5, null], rotation_deg: [1, 2] }),
           axis_errors: table({ along_m: [0, 0], across_m: [0, 0], up_m: [0, 0] }),
           scale: { t_s: [] },
+          relative: { t_s: [] },
         },
       },
     },

@@ -1,21 +1,19 @@
-#include "server/timeline/scale_errors.hpp"
+#include "server/timeline/window_errors.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <utility>
 
-#include "evaluation/scale_drift.hpp"
 #include "server/timeline/count_frames.hpp"
 
 namespace overfly::server {
 namespace {
 
-using evaluation::kMaxScalePlaces;
-using evaluation::ScalePlace;
+using evaluation::kMaxWindowPoses;
+using evaluation::PosePair;
 
-/// The rows before `first_frame`, at most kMaxScalePlaces.
+/// The rows before `first_frame`, at most kMaxWindowPoses.
 std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
                                      std::size_t estimator,
                                      std::int64_t first_frame) {
@@ -23,7 +21,7 @@ std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
     const auto row = timeline.estimates(estimator, i, 1);
     return !row.empty() && row.front().sample.frame < first_frame;
   });
-  const std::size_t count = std::min(end, kMaxScalePlaces);
+  const std::size_t count = std::min(end, kMaxWindowPoses);
   return timeline.estimates(estimator, end - count, count);
 }
 
@@ -38,40 +36,43 @@ std::vector<FrameRow> frames_between(const RunTimeline& timeline,
   return timeline.frames(begin, end - std::min(begin, end), camera);
 }
 
-std::vector<std::optional<ScalePlace>> places_of(const std::vector<EstimateRow>& rows,
-                                                 const std::vector<FrameRow>& frames,
-                                                 const RowAlignment& alignment) {
-  std::vector<std::optional<ScalePlace>> places(rows.size());
+std::vector<std::optional<PosePair>> poses_of(const std::vector<EstimateRow>& rows,
+                                              const std::vector<FrameRow>& frames,
+                                              const RowAlignment& alignment,
+                                              const Pose& T_body_camera) {
+  std::vector<std::optional<PosePair>> poses(rows.size());
   auto frame = frames.begin();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const EstimateSample& sample = rows[i].sample;
     while (frame != frames.end() && frame->frame < sample.frame) ++frame;
     if (frame == frames.end() || frame->frame != sample.frame) continue;
     if (const auto T_world_body = alignment.T_world_body(rows[i])) {
-      places[i] = {sample.map_id, frame->T_world_body.translation, T_world_body->translation};
+      poses[i] = {sample.map_id, frame->T_world_camera, *T_world_body * T_body_camera};
     }
   }
-  return places;
+  return poses;
 }
 
 }  // namespace
 
-std::vector<std::optional<double>> scale_errors_of(const RunTimeline& timeline,
-                                                   std::size_t estimator,
-                                                   const std::vector<EstimateRow>& rows,
-                                                   const RowAlignment& alignment) {
-  std::vector<std::optional<double>> errors(rows.size());
+std::vector<WindowErrors> window_errors_of(const RunTimeline& timeline,
+                                           std::size_t estimator,
+                                           const std::vector<EstimateRow>& rows,
+                                           const RowAlignment& alignment) {
+  std::vector<WindowErrors> errors(rows.size());
   if (rows.empty()) return errors;
   std::vector<EstimateRow> all = rows_before(timeline, estimator, rows.front().sample.frame);
   const std::size_t earlier = all.size();
   all.insert(all.end(), rows.begin(), rows.end());
-  const std::vector<FrameRow> frames = frames_between(timeline,
-                                                      camera_of_estimator(timeline, estimator),
-                                                      all.front().sample.frame,
-                                                      all.back().sample.frame);
-  const std::vector<std::optional<ScalePlace>> places = places_of(all, frames, alignment);
+  const std::size_t camera = camera_of_estimator(timeline, estimator);
+  const std::vector<FrameRow> frames =
+      frames_between(timeline, camera, all.front().sample.frame, all.back().sample.frame);
+  const std::vector<std::optional<PosePair>> poses =
+      poses_of(all, frames, alignment, timeline.cameras().at(camera).T_body_camera);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (places[earlier + i]) errors[i] = evaluation::scale_error_at(places, earlier + i);
+    if (!poses[earlier + i]) continue;
+    errors[i] = {evaluation::scale_error_at(poses, earlier + i),
+                 evaluation::relative_error_at(poses, earlier + i)};
   }
   return errors;
 }

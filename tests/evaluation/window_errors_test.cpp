@@ -1,0 +1,94 @@
+#include "evaluation/window_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "core/motion/pose.hpp"
+#include "evaluation/errors.hpp"
+#include "evaluation/evaluation.hpp"
+
+namespace overfly::evaluation {
+namespace {
+
+/// A climbing turn with steps of equal length, and an estimate whose scale, heading and noise
+/// change.
+class WindowErrorsOfAFlight : public ::testing::Test {
+ protected:
+  WindowErrorsOfAFlight() {
+    constexpr double kRadius_m = 200.0;
+    constexpr double kStep_m = 1.37;
+    for (int k = 0; k < 700; ++k) {
+      const double angle_rad = kStep_m * k / kRadius_m;
+      const auto about_up = [](double rad) {
+        return Eigen::Quaterniond(Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ()));
+      };
+      const Eigen::Vector3d place(
+          kRadius_m * std::sin(angle_rad), -kRadius_m * std::cos(angle_rad), 0.1 * k);
+      const Pose truth{about_up(angle_rad), place};
+      const double scale = 1.0 + 1e-4 * k;
+      const Pose estimate{
+          about_up(angle_rad + 2e-4 * k),
+          scale * place + 0.3 * Eigen::Vector3d(std::sin(0.7 * k), std::cos(k), 1.0)};
+      pairs.emplace_back(PosePair{0, truth, estimate});
+      MatchedPose match;
+      match.t_ns = k;
+      match.T_world_camera = truth;
+      matches.push_back(match);
+      estimates.push_back(estimate);
+    }
+  }
+
+  std::vector<std::optional<PosePair>> pairs;
+  std::vector<MatchedPose> matches;
+  std::vector<Pose> estimates;
+};
+
+/// The score averages pairs from every tenth pose on; at a constant speed each ends one of the
+/// instants.
+TEST_F(WindowErrorsOfAFlight, AverageToTheRelativeErrorOfTheScore) {
+  const auto scored = relative_errors(matches, estimates, {kErrorWindow_m});
+  ASSERT_EQ(scored.size(), 1U);
+  std::size_t end = 0;
+  while (!relative_error_at(pairs, end)) ++end;
+  std::vector<double> translation;
+  std::vector<double> rotation_rad_m;
+  for (; end < pairs.size(); end += 10) {
+    const auto error = relative_error_at(pairs, end);
+    ASSERT_TRUE(error);
+    translation.push_back(error->translation);
+    rotation_rad_m.push_back(error->rotation_rad_m);
+  }
+  ASSERT_EQ(translation.size(), static_cast<std::size_t>(scored[0].pairs));
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  EXPECT_NEAR(100.0 * mean(translation), scored[0].translation_mean_percent, 1e-9);
+  EXPECT_NEAR(
+      100.0 * deg_from_rad(mean(rotation_rad_m)), scored[0].rotation_mean_deg_per_100m, 1e-9);
+  EXPECT_GT(scored[0].translation_mean_percent, 1.0);
+}
+
+TEST_F(WindowErrorsOfAFlight, FollowThePathAndNotTheChord) {
+  // The path is longer than its chord: the relative error is there first.
+  std::size_t first = 0;
+  while (!relative_error_at(pairs, first)) ++first;
+  EXPECT_FALSE(scale_error_at(pairs, first));
+  EXPECT_TRUE(scale_error_at(pairs, first + 1));
+}
+
+TEST_F(WindowErrorsOfAFlight, LeaveOutInstantsWithoutAnEstimate) {
+  const auto whole = relative_error_at(pairs, 400);
+  for (std::size_t k = 380; k < 400; ++k) pairs[k].reset();
+  const auto with_gap = relative_error_at(pairs, 400);
+  ASSERT_TRUE(whole && with_gap);
+  EXPECT_NEAR(with_gap->translation, whole->translation, 0.2 * whole->translation);
+  pairs[379]->map_id = 1;
+  EXPECT_FALSE(relative_error_at(pairs, 400)) << "another map";
+}
+
+}  // namespace
+}  // namespace overfly::evaluation
