@@ -69,6 +69,7 @@ class Explainer {
     for (const Step step : {&Explainer::find_part,
                             &Explainer::take_away_each,
                             &Explainer::change_each,
+                            &Explainer::change_those_left_out,
                             &Explainer::keep_each,
                             &Explainer::take_away_pairs,
                             &Explainer::confirm,
@@ -135,6 +136,7 @@ class Explainer {
     const std::size_t most =
         std::max<std::size_t>(1, flights_.left() - std::min(flights_.left(), reserved));
     while (causes.size() > most) {
+      left_out_.push_back(causes.back());
       result_.untried.push_back(
           {causes.back(),
            "beyond the limit of " + counted(options_.flights.most_flights, "flight")});
@@ -178,6 +180,17 @@ class Explainer {
     return fly_without(affordable(changeable(false), 0));
   }
 
+  /// Where nothing has been found, no flight needs to be kept to confirm it.
+  Status change_those_left_out() {
+    if (!result_.necessary.empty() || has_survived(calm_)) return {};
+    Causes causes(left_out_.rbegin(), left_out_.rend());
+    std::erase_if(causes, is_disturbance);
+    if (causes.size() > flights_.left()) causes.resize(flights_.left());
+    std::erase_if(result_.untried,
+                  [&](const UntriedCause& untried) { return holds(causes, untried.cause); });
+    return fly_without(causes);
+  }
+
   /// Causes that may be enough by themselves.
   [[nodiscard]] Causes candidates() const {
     if (!result_.necessary.empty()) return result_.necessary;
@@ -214,7 +227,9 @@ class Explainer {
   /// Where no single cause has to go, two may have to.
   Status take_away_pairs() {
     if (!result_.necessary.empty()) return {};
-    const Causes& causes = result_.sufficient.size() > 1 ? result_.sufficient : tried_;
+    Causes causes = result_.sufficient.size() > 1 ? result_.sufficient : tried_;
+    // Taking away all disturbances was not enough.
+    if (has_failed(calm_)) std::erase_if(causes, is_disturbance);
     for (std::size_t last = 1; last < causes.size(); ++last) {
       for (std::size_t first = 0; first < last && flights_.left() > 0; ++first) {
         const Causes pair = {causes[first], causes[last]};
@@ -306,6 +321,7 @@ class Explainer {
   const Reflight* calm_ = nullptr;  ///< without any disturbance
   Causes disturbances_;
   Causes tried_;
+  Causes left_out_;  ///< not tried because of the limit, the least suspicious first
 };
 
 Error not_explainable(const fs::path& folder, const std::string& reason) {

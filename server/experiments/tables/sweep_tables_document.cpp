@@ -279,7 +279,7 @@ std::string published_text(const std::vector<std::optional<double>>& values, std
 
 DocumentSection published_section(const SweepTables& tables, const PublishedErrors& published) {
   DocumentSection section;
-  section.heading = "Beside published errors";
+  section.heading = "Published errors";
   section.paragraphs = {"Published: " + published.source + ". Own errors: convention " +
                         paper_convention().name + "."};
   section.table = error_table(tables, 0, {kPosition, kRotation});

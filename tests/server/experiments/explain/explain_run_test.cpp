@@ -55,6 +55,7 @@ has() {
     blur) grep -q '"motion_blur": true' "$scenario";;
     noise) grep -q '"shot_noise": true' "$scenario";;
     detail) ! grep -q '"detail"' "$scenario";;
+    start) ! grep -q '"start_s": [0-9]*\.[67]' "$scenario";;
     seed1) grep -q '"seed": 1,' "$scenario";;
     exposure_ms) grep -q "\"exposure_ms\": $2" "$scenario";;
   esac
@@ -145,6 +146,29 @@ TEST_F(ExplainRun, TextureIsTheLimitOfTheDataWhereNoDisturbanceExplains) {
   EXPECT_THAT(explanation->necessary, ElementsAre(Cause::kTexture));
   EXPECT_THAT(explanation->sufficient, ElementsAre(Cause::kTexture));
   EXPECT_TRUE(explanation->data_limited);
+}
+
+/// Every single cause is tried before pairs, also those for which the limit left no flight at
+/// first.
+TEST_F(ExplainRun, NamesTheStartWhereNothingElseExplains) {
+  const auto explanation = explain("has start");
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_THAT(explanation->necessary, ElementsAre(Cause::kStart));
+  for (const UntriedCause& untried : explanation->untried) {
+    EXPECT_THAT(untried.reason, ::testing::Not(HasSubstr("limit"))) << to_string(untried.cause);
+  }
+}
+
+/// Disturbances cannot be the cause if the estimator fails without all of them.
+TEST_F(ExplainRun, PairsAreOfWhatMayExplain) {
+  const auto explanation = explain("true", 20);
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  for (const Reflight& flight : explanation->flights) {
+    if (flight.changes.size() != 2) continue;
+    for (const CauseChange& change : flight.changes) {
+      EXPECT_FALSE(is_disturbance(change.cause)) << flight.name;
+    }
+  }
 }
 
 TEST_F(ExplainRun, FailsWhateverIsChanged) {

@@ -75,6 +75,7 @@ PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 SchedulerParameters=bf_interval=1,sched_interval=2,requeue_setup_env_fail
 ReturnToService=2
+SlurmdTimeout=10
 SlurmdParameters=config_overrides
 KillWait=3
 MinJobAge=5
@@ -100,15 +101,26 @@ PartitionName=high Nodes={self.node} PriorityTier=10 PreemptMode=OFF OverSubscri
                     f"--seed-file={self.folder}/munge.seed")
         self.wait_for("munged", lambda: (self.folder / "munge.socket").exists())
         self.start_controller()
+        self.start_node()
+        self.wait_for("an idle node", lambda: "idle" in self.node_state())
+
+    def start_node(self) -> None:
         self.launch("slurmd", "/usr/sbin/slurmd", "-D", "-f", str(self.conf), "-N", self.node)
-        self.wait_for("an idle node", lambda: "idle" in self.text("sinfo", "-h", "-o", "%T"))
+
+    def kill_node(self) -> None:
+        """Its daemon, not what it has started."""
+        self.processes["slurmd"].kill()
+        self.processes.pop("slurmd").wait()
+
+    def node_state(self) -> str:
+        return self.text("sinfo", "-h", "-o", "%T")
 
     def start_controller(self) -> None:
         self.launch("slurmctld", "/usr/sbin/slurmctld", "-D", "-f", str(self.conf))
 
     def kill_controller(self) -> None:
         self.processes["slurmctld"].kill()
-        self.processes["slurmctld"].wait()
+        self.processes.pop("slurmctld").wait()
 
     def stop(self) -> None:
         self.text("scancel", "--user=root")
