@@ -229,7 +229,7 @@ class SweepFlyer {
     }
     if (options_.progress) options_.progress(progress);
     // For those who watch the folder; a full disk is noticed where results are written.
-    (void)write_progress(options_.folder, progress);
+    if (options_.writes_progress) (void)write_progress(options_.folder, progress);
   }
 
   const Sweep& sweep_;

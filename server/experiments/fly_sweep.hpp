@@ -35,6 +35,7 @@ struct SweepOptions {
   std::function<std::shared_ptr<const void>(const RunMemory&)> hold_memory;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const SweepProgress&)> progress;
+  bool writes_progress = true;  ///< into the folder; false: the caller does
   std::function<void(const std::string&)> warn;
 };
 

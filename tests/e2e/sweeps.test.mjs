@@ -67,6 +67,24 @@ const kStarted = {
   estimators: [{ name: 'feature', type: 'feature' }],
 };
 
+/** Without the sun from an instant on: the estimator survives if it comes after the end of the flight. */
+const kBorder = {
+  format_version: 1,
+  title: 'When may the light go out?',
+  scenario: 'course',
+  set: {
+    duration_s: 4,
+    'camera.width_px': 320,
+    'camera.height_px': 240,
+    faults: [{ kind: 'blackout', at_s: 0 }],
+  },
+  axes: [
+    { path: 'faults.0.at_s', label: 'Blackout', unit: 's', values: [0, 1, 2, 6, 8, 10] },
+    { path: 'flight.course.airspeed_m_s', label: 'Airspeed', unit: 'm/s', values: [20, 25] },
+  ],
+  estimators: [{ name: 'feature', type: 'feature' }],
+};
+
 /** Processes whose command line has this text. */
 function processesOf(text) {
   return readdirSync('/proc').filter((id) => {
@@ -250,6 +268,32 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('extend_sweep_dark_1280x800');
     await page.emulateMedia({ colorScheme: 'light' });
     await page.locator('.sweep-form button', { hasText: 'Close' }).click();
+    await page.locator('[data-sweep=night]').click();
+    await matrix('hold').first().waitFor();
+  });
+
+  step('flies only the border along an axis', async () => {
+    await page.locator('[data-role=new-sweep]').click();
+    await page.locator('[data-role=sweep-cost]', { hasText: 'cells' }).waitFor({ timeout: kPatience_ms });
+    await page.locator('[data-role=sweep-name]').fill('border');
+    await page.locator('[data-role=sweep-text]').fill(JSON.stringify(kBorder, null, 2));
+    await page
+      .locator('[data-role=sweep-cost]', { hasText: '12 cells' })
+      .waitFor({ timeout: kPatience_ms });
+    await page.locator('[data-role=sweep-border]').selectOption('faults.0.at_s');
+    await page.locator('[data-role=sweep-cost]', { hasText: 'only the cells at the border' }).waitFor();
+    await dashboard.screenshot('new_border_1280x800');
+    await page.locator('[data-role=start-sweep]').click();
+    await state('border found');
+    const lines = page.locator('.sweep-envelope tbody tr');
+    assert.deepEqual(await lines.allInnerTexts(), ['20\t6 s\t2 s', '25\t6 s\t2 s']);
+    const flown = await cells().count();
+    assert.ok(flown < 12, `${flown} of 12 cells`);
+    assert.match(await page.locator('.sweep-envelope').innerText(), /\d of 12 cells were needed/);
+    assert.equal(await page.locator('[data-role=continue-sweep]').innerText(), 'Fly the other cells');
+    await page.locator('[data-sweep=border]').waitFor();
+    await page.locator('.sweep-envelope').scrollIntoViewIfNeeded();
+    await dashboard.screenshot('border_found_1280x800');
     await page.locator('[data-sweep=night]').click();
     await matrix('hold').first().waitFor();
   });

@@ -14,7 +14,6 @@
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/envelope/envelope.hpp"
-#include "server/files/whole_file.hpp"
 
 namespace overfly::app {
 namespace {
@@ -39,8 +38,7 @@ int envelope(const EnvelopeArguments& arguments) {
   Result<experiments::Envelope> found = [&] {
     ProgressDisplay display(arguments.quiet);
     experiments::EnvelopeOptions options;
-    options.axis = arguments.axis;
-    options.estimator = arguments.estimator;
+    options.border = {arguments.axis, arguments.estimator};
     options.flights.folder = fs::absolute(arguments.out);
     options.flights.frame_cache = frame_cache_from(arguments.frame_cache, options.flights.folder);
     options.flights.program = "/proc/self/exe";
@@ -59,11 +57,11 @@ int envelope(const EnvelopeArguments& arguments) {
     }
     return report(found.error());
   }
-  const nlohmann::json document = experiments::json_from(*found);
-  const fs::path file = fs::path(arguments.out) / "envelope.json";
-  if (Status status = server::write_json(file, document); !status) return report(status.error());
+  if (Status status = experiments::write_envelope(arguments.out, *found); !status) {
+    return report(status.error());
+  }
   if (arguments.json) {
-    std::cout << document.dump(2) << "\n";
+    std::cout << experiments::json_from(*found).dump(2) << "\n";
   } else {
     std::cout << experiments::markdown_from(*sweep, *found);
   }

@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "server/experiments/envelope/border_search.hpp"
+#include "server/files/whole_file.hpp"
 
 namespace overfly::server::experiments {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+constexpr std::size_t kMaxEnvelopeBytes = std::size_t{4} << 20U;
 
 Error invalid(const std::string& text) { return {ErrorCode::kInvalidArgument, text}; }
 
@@ -82,39 +87,88 @@ Result<bool> survived(const FlownSweep& flown, std::size_t cell, const std::stri
   return 2 * successes >= flights;
 }
 
+Result<const SweepAxis*> axis_along(const Sweep& sweep, const std::string& name) {
+  std::string names;
+  for (const SweepAxis* axis : border_axes(sweep)) {
+    if (axis->name == name) return axis;
+    names += (names.empty() ? "" : ", ") + axis->name;
+  }
+  if (names.empty()) {
+    return invalid("border.axis = " + name +
+                   ": the sweep has no axis with at least two values, in a grid without a Latin "
+                   "hypercube");
+  }
+  return invalid("border.axis = " + name +
+                 ": must be an axis of the sweep with at least two values (" + names + ")");
+}
+
+/// How much of the whole sweep is flown. For those who watch the folder: errors are noticed where
+/// results are written.
+/// @param now  of the cells that were flown last
+void write_whole_progress(const Sweep& sweep, const fs::path& folder, const SweepProgress& now) {
+  const Result<FlownSweep> whole = read_sweep(sweep, folder);
+  if (!whole) return;
+  SweepProgress progress = now;
+  progress.passed = whole->progress.passed;
+  progress.most = whole->progress.most;
+  progress.left_s = 0.0;
+  (void)write_progress(folder, progress);
+}
+
+fs::path envelope_file(const fs::path& folder) { return folder / "envelope.json"; }
+
 }  // namespace
 
-Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& options) {
-  const auto along = std::find_if(sweep.axes.begin(), sweep.axes.end(), [&](const auto& axis) {
-    return axis.name == options.axis;
-  });
-  if (along == sweep.axes.end()) {
-    std::string names;
-    for (const SweepAxis& axis : sweep.axes) names += (names.empty() ? "" : ", ") + axis.name;
-    return invalid("axis = " + options.axis + ": must be an axis of the sweep (" + names + ")");
+std::vector<const SweepAxis*> border_axes(const Sweep& sweep) {
+  std::vector<const SweepAxis*> axes;
+  if (sweep.latin_hypercube) return axes;
+  for (const SweepAxis& axis : sweep.axes) {
+    if (axis.values.size() >= 2) axes.push_back(&axis);
   }
-  if (sweep.latin_hypercube || along->values.size() < 2) {
-    return invalid("axis = " + options.axis +
-                   ": must have at least two values, in a grid without a Latin hypercube");
+  return axes;
+}
+
+Status check_border(const Sweep& sweep,
+                    const std::vector<std::string>& estimators,
+                    BorderSearch& border) {
+  const Result<const SweepAxis*> along = axis_along(sweep, border.axis);
+  if (!along) return along.error();
+  if (border.estimator.empty() && !estimators.empty()) border.estimator = estimators.front();
+  if (std::find(estimators.begin(), estimators.end(), border.estimator) == estimators.end()) {
+    return invalid("border.estimator = " + border.estimator + ": must be one of the sweep");
   }
   const Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
+  const Result<Grid> grid = grid_of(sweep, *cells, **along);
+  return grid ? Status() : Status(grid.error());
+}
+
+Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& options) {
+  const Result<const SweepAxis*> found = axis_along(sweep, options.border.axis);
+  if (!found) return found.error();
+  const SweepAxis* const along = *found;
+  const Result<std::vector<SweepCell>> cells = cells_of(sweep);
+  if (!cells) return cells.error();
+  const Result<SweepPlan> plan = SweepPlan::make(sweep, *cells);
+  if (!plan) return plan.error();
+  BorderSearch border = options.border;
+  if (Status status = check_border(sweep, plan->estimators(), border); !status) {
+    return status.error();
+  }
   const Result<Grid> grid = grid_of(sweep, *cells, *along);
   if (!grid) return grid.error();
+  SweepOptions flights = options.flights;
+  flights.writes_progress = false;
 
-  Envelope envelope{along->name, along->label, along->unit, options.estimator, {}, 0, 0};
+  Envelope envelope{along->name, along->label, along->unit, border.estimator, {}, 0, 0};
   std::size_t flown_cells = 0;
   const AskPlaces ask = [&](const std::vector<GridPlace>& places) -> Result<std::vector<bool>> {
     std::vector<SweepCell> wanted;
     for (const auto& [line, value] : places) wanted.push_back(*grid->cells[line][value]);
-    const Result<FlownSweep> flown = fly_cells(sweep, std::move(wanted), options.flights);
+    const Result<FlownSweep> flown = fly_cells(sweep, std::move(wanted), flights);
     if (!flown) return flown.error();
+    write_whole_progress(sweep, flights.folder, flown->progress);
     if (flown->cancelled) return Error{ErrorCode::kCancelled, "cancelled"};
-    const std::vector<std::string>& names = flown->plan.estimators();
-    if (envelope.estimator.empty() && !names.empty()) envelope.estimator = names.front();
-    if (std::find(names.begin(), names.end(), envelope.estimator) == names.end()) {
-      return invalid("estimator = " + envelope.estimator + ": must be one of the sweep");
-    }
     std::vector<bool> answers;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Result<bool> answer = survived(*flown, i, envelope.estimator);
@@ -134,9 +188,9 @@ Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& option
     return place ? std::optional<Json>(along->values[*place].value) : std::nullopt;
   };
   for (std::size_t i = 0; i < borders->lines.size(); ++i) {
-    const LineBorder& border = borders->lines[i];
+    const LineBorder& line = borders->lines[i];
     envelope.lines.push_back(
-        {grid->at[i], value_at(border.survives), value_at(border.fails), border.irregular});
+        {grid->at[i], value_at(line.survives), value_at(line.fails), line.irregular});
   }
   return envelope;
 }
@@ -180,6 +234,37 @@ Json json_from(const Envelope& envelope) {
           {"cells", envelope.cells},
           {"cells_needed", envelope.cells_needed},
           {"lines", std::move(lines)}};
+}
+
+Status write_envelope(const fs::path& folder, const Envelope& envelope) {
+  return write_json(envelope_file(folder), json_from(envelope));
+}
+
+Status write_border_search(const fs::path& folder, const Sweep& sweep, const BorderSearch& border) {
+  const Result<const SweepAxis*> along = axis_along(sweep, border.axis);
+  if (!along) return along.error();
+  Json document =
+      json_from({(*along)->name, (*along)->label, (*along)->unit, border.estimator, {}, 0, 0});
+  document["lines"] = nullptr;
+  return write_json(envelope_file(folder), document);
+}
+
+void remove_envelope(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(envelope_file(folder), ignored);
+}
+
+Result<Json> read_envelope(const fs::path& folder) {
+  Result<Json> document = read_json(envelope_file(folder), kMaxEnvelopeBytes);
+  if (!document) return document.error();
+  const auto has_text = [&](const char* name) {
+    return document->contains(name) && (*document)[name].is_string();
+  };
+  const bool valid = document->is_object() && has_text("axis") && has_text("estimator") &&
+                     document->contains("lines") &&
+                     ((*document)["lines"].is_array() || (*document)["lines"].is_null());
+  if (valid) return document;
+  return Error{ErrorCode::kUnreadable, envelope_file(folder).string() + ": is no envelope"};
 }
 
 }  // namespace overfly::server::experiments

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "server/experiments/jobs/command_output.hpp"
 #include "server/experiments/jobs/job_folder.hpp"
 #include "server/files/whole_file.hpp"
@@ -65,6 +67,36 @@ std::uint64_t task_memory_mib(const RunMemory& memory) {
   return (memory.images_bytes + memory.caches_bytes + kProgramBytes) >> 20U;
 }
 
+/// Slurm's reason for a task that could not be started on a node and will not be tried again.
+constexpr const char* kNotLaunched = "launch failed requeued held";
+
+struct QueuedTask {
+  std::string id;  ///< "17_0"
+  std::string state;
+  std::string reason;
+};
+
+/// From lines "17_0|PENDING|Resources"; what is no such line is left out.
+std::vector<QueuedTask> queued_tasks(const std::string& list) {
+  std::vector<QueuedTask> tasks;
+  std::istringstream lines(list);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    QueuedTask task;
+    std::getline(fields, task.id, '|');
+    std::getline(fields, task.state, '|');
+    std::getline(fields, task.reason);
+    const bool is_id =
+        !task.id.empty() && task.id.find_first_not_of("0123456789_") == std::string::npos;
+    if (is_id && !task.state.empty()) tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
+bool waits_for_its_turn(const std::string& reason) {
+  return reason == "None" || reason == "Priority" || reason == "Resources" || reason == "BeginTime";
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SlurmWorkers>> SlurmWorkers::open(SlurmOptions options) {
@@ -112,7 +144,7 @@ Status SlurmWorkers::write_script() const {
 
 std::optional<std::size_t> SlurmWorkers::tasks() {
   const Result<std::string> list =
-      run_slurm({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%i"});
+      run_slurm({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%i|%T|%r"});
   if (!list) {
     if (!silent_ && options_.warn) {
       options_.warn(list.error().message + "; flights go on, workers are counted when it answers");
@@ -122,7 +154,43 @@ std::optional<std::size_t> SlurmWorkers::tasks() {
   }
   if (silent_ && options_.warn) options_.warn("squeue answers again");
   silent_ = false;
-  return static_cast<std::size_t>(std::count(list->begin(), list->end(), '\n'));
+  std::size_t count = 0;
+  std::vector<std::string> held;
+  std::string reason;
+  bool one_runs = false;
+  for (const QueuedTask& task : queued_tasks(*list)) {
+    if (task.reason == kNotLaunched) {
+      held.push_back(task.id);
+      continue;
+    }
+    ++count;
+    if (task.state != "PENDING") {
+      one_runs = true;
+    } else if (!waits_for_its_turn(task.reason)) {
+      reason = task.reason;
+    }
+  }
+  if (!held.empty()) cancel_held(held);
+  report_waiting(one_runs ? "" : reason);
+  return count;
+}
+
+void SlurmWorkers::cancel_held(const std::vector<std::string>& tasks) {
+  // The name and the state limit what a wrong id could end.
+  std::vector<std::string> words{"scancel", "--name=" + name_, "--state=PENDING"};
+  words.insert(words.end(), tasks.begin(), tasks.end());
+  const Result<std::string> cancelled = run_slurm(words);
+  if (!options_.warn) return;
+  options_.warn("Slurm could not launch " + counted(tasks.size(), "task") +
+                " and holds what it could not launch: replaced");
+  if (!cancelled) options_.warn(cancelled.error().message);
+}
+
+void SlurmWorkers::report_waiting(const std::string& reason) {
+  if (reason != waiting_ && !reason.empty() && options_.warn) {
+    options_.warn("no task runs; Slurm's reason: " + reason);
+  }
+  waiting_ = reason;
 }
 
 double SlurmWorkers::pause_s() const {

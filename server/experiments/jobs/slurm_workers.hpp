@@ -27,9 +27,10 @@ struct SlurmOptions {
 };
 
 /// Keeps as many tasks queued or running as there are flights, up to SlurmOptions::workers. The
-/// queue is only asked for the number of tasks: what was flown is known from the job folder alone,
-/// so that a queue that does not answer, or a task that Slurm loses, costs no flight. All tasks
-/// have a name that only this sweep uses, by which they are found after the controller was
+/// queue is only asked which tasks there are: what was flown is known from the job folder alone,
+/// so that a queue that does not answer, or a task that Slurm loses, costs no flight. Tasks that
+/// Slurm holds because it could not launch them are replaced; for what others wait is reported. All
+/// tasks have a name that only this sweep uses, by which they are found after the controller was
 /// restarted.
 class SlurmWorkers : public WorkerSupply {
  public:
@@ -48,8 +49,12 @@ class SlurmWorkers : public WorkerSupply {
   explicit SlurmWorkers(SlurmOptions options) : options_(std::move(options)) {}
   Status load_name();
   Status write_script() const;
-  /// Tasks that are queued or running; empty if the queue does not answer.
+  /// Tasks that run or will; empty if the queue does not answer.
   std::optional<std::size_t> tasks();
+  /// @param tasks  held by Slurm
+  void cancel_held(const std::vector<std::string>& tasks);
+  /// @param reason  why all tasks wait; empty if one runs, or if they wait for their turn
+  void report_waiting(const std::string& reason);
   Status submit(std::size_t tasks, const RunMemory& memory);
   Status refused(const std::string& reason);
   /// Seconds before the next attempt after `failures_` in a row.
@@ -59,6 +64,7 @@ class SlurmWorkers : public WorkerSupply {
   std::string name_;  ///< of all jobs of this sweep: "overfly-9f3a2c01"
   Clock::time_point next_question_;
   Clock::time_point next_submission_;
+  std::string waiting_;     ///< the reason that was reported last
   bool silent_ = false;     ///< the queue does not answer, which was reported
   bool submitted_ = false;  ///< at least once
   int failures_ = 0;        ///< of submissions, in a row

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "server/experiments/envelope/envelope.hpp"
 #include "server/experiments/fly_sweep.hpp"
 #include "server/experiments/sweep_folders.hpp"
 
@@ -51,8 +52,11 @@ std::optional<double> known_duration_s(const Sweep& sweep, const fs::path& sweep
 }  // namespace
 
 SweepCost sweep_cost(const Sweep& sweep, const SweepPlan& plan, const fs::path& sweeps_folder) {
+  std::vector<std::pair<std::string, std::string>> axes;
+  for (const SweepAxis* axis : border_axes(sweep)) axes.emplace_back(axis->name, axis->label);
   return {plan.cells().size(),
-          plan.estimators().size(),
+          plan.estimators(),
+          std::move(axes),
           plan.most_flights(),
           known_duration_s(sweep, sweeps_folder)};
 }

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "server/experiments/sweep_plan.hpp"
 
@@ -11,7 +14,9 @@ namespace overfly::server::experiments {
 
 struct SweepCost {
   std::size_t cells = 0;
-  std::size_t estimators = 0;
+  std::vector<std::string> estimators;
+  /// Along which the border of survival can be sought: name and label.
+  std::vector<std::pair<std::string, std::string>> border_axes;
   std::size_t flights = 0;         ///< at most
   std::optional<double> flight_s;  ///< mean of one, by the clock on the wall; empty if not known
 };

@@ -29,6 +29,15 @@ Status write_summary(const Sweep& sweep, const FlownSweep& flown, const fs::path
   return write_whole(folder / "summary.md", table);
 }
 
+/// What is sought or was found; null if every cell is flown.
+Json envelope_entry(const fs::path& folder) {
+  const Result<Json> envelope = read_envelope(folder);
+  if (!envelope) return nullptr;
+  return {{"axis", (*envelope)["axis"]},
+          {"estimator", (*envelope)["estimator"]},
+          {"found", !(*envelope)["lines"].is_null()}};
+}
+
 }  // namespace
 
 SweepService::SweepService(RunManager& runs, SweepServiceOptions options)
@@ -50,6 +59,7 @@ void SweepService::add_state(Json& entry) const {
     entry["here"] = flight_->cancel ? "cancelling" : "flying";
     entry["flying"] = true;
   }
+  entry["envelope"] = envelope_entry(folder_ / name);
   const auto problem = problems_.find(name);
   entry["problem"] = problem == problems_.end() ? Json() : Json(problem->second);
 }
@@ -64,6 +74,11 @@ Result<Json> SweepService::entry(const std::string& name) const {
   Result<Json> entry = sweep_entry(folder_, name);
   if (entry) add_state(*entry);
   return entry;
+}
+
+Json SweepService::envelope(const std::string& name) const {
+  Result<Json> envelope = read_envelope(folder_ / name);
+  return envelope ? std::move(*envelope) : Json();
 }
 
 Result<Json> SweepService::document(const std::string& name) const {
@@ -119,7 +134,7 @@ Status SweepService::start(const std::string& name,
   const bool made = !failed && fs::create_directory(folder_ / name, failed);
   if (failed) return Error{ErrorCode::kIo, (folder_ / name).string() + ": " + failed.message()};
   if (!made) return exists;
-  Status launched = launch(name, std::move(*read), request.jobs);
+  Status launched = launch(name, std::move(*read), request);
   // So that the name is free for another attempt.
   if (!launched) fs::remove_all(folder_ / name, failed);
   return launched;
@@ -143,18 +158,32 @@ Status SweepService::go_on(const std::string& name,
   const Json& wanted = request.document.is_null() ? *own : request.document;
   Result<ClientSweep> read = read_client_sweep(runs_, wanted, refusal, cancel);
   if (!read) return read.error();
-  return launch(name, std::move(*read), request.jobs);
+  return launch(name, std::move(*read), request);
 }
 
-Status SweepService::launch(const std::string& name, ClientSweep sweep, std::size_t jobs) {
-  if (Status status = write_sweep(*sweep.sweep, sweep.plan, folder_ / name); !status) {
-    return status;
+Status SweepService::launch(const std::string& name,
+                            ClientSweep sweep,
+                            const SweepRequest& request) {
+  std::optional<BorderSearch> border = request.border;
+  if (border) {
+    Status status = check_border(*sweep.sweep, sweep.plan.estimators(), *border);
+    if (!status) return status;
+  }
+  const fs::path folder = folder_ / name;
+  if (Status status = write_sweep(*sweep.sweep, sweep.plan, folder); !status) return status;
+  if (border) {
+    Status status = write_border_search(folder, *sweep.sweep, *border);
+    if (!status) return status;
+  } else if (!request.document.is_null()) {
+    remove_envelope(folder);  // It was that of another document.
   }
   const std::lock_guard lock(mutex_);
   if (stopping_) return Error{ErrorCode::kConflict, "the server is stopping"};
   if (thread_.joinable()) thread_.join();  // It has ended: a sweep in progress was refused above.
-  const std::shared_ptr<Flight> flight(
-      new Flight{name, std::move(sweep), jobs == 0 ? default_jobs() : jobs});
+  const std::shared_ptr<Flight> flight(new Flight{name,
+                                                  std::move(sweep),
+                                                  request.jobs == 0 ? default_jobs() : request.jobs,
+                                                  std::move(border)});
   problems_.erase(name);
   try {
     thread_ = std::thread([this, flight] { fly(*flight); });
@@ -178,9 +207,18 @@ Status SweepService::fly_into(const Flight& flight, const fs::path& folder) {
   options.hold_memory = [this](const RunMemory& memory) { return runs_.hold_memory(memory); };
   options.cancel = &flight.cancel;
   options.warn = [&](const std::string& text) { log("warning", flight.name, text); };
-  const Result<FlownSweep> flown = fly_sweep(*flight.sweep.sweep, options);
+  const Sweep& sweep = *flight.sweep.sweep;
+  if (flight.border) {
+    const Result<Envelope> envelope = find_envelope(sweep, {options, *flight.border, {}});
+    if (!envelope && envelope.error().code == ErrorCode::kCancelled) return {};
+    if (!envelope) return envelope.error();
+    if (Status status = write_envelope(folder, *envelope); !status) return status;
+    const Result<FlownSweep> flown = read_sweep(sweep, folder);
+    return flown ? write_summary(sweep, *flown, folder) : Status(flown.error());
+  }
+  const Result<FlownSweep> flown = fly_sweep(sweep, options);
   if (!flown) return flown.error();
-  return write_summary(*flight.sweep.sweep, *flown, folder);
+  return write_summary(sweep, *flown, folder);
 }
 
 void SweepService::fly(Flight& flight) {

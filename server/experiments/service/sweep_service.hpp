@@ -9,10 +9,12 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "core/result.hpp"
+#include "server/experiments/envelope/envelope.hpp"
 #include "server/experiments/service/client_sweep.hpp"
 #include "server/experiments/service/sweep_cost.hpp"
 #include "server/runs/run_manager.hpp"
@@ -31,6 +33,8 @@ struct SweepServiceOptions {
 struct SweepRequest {
   nlohmann::json document;
   std::size_t jobs = 0;  ///< flights at the same time; 0: default_jobs()
+  /// Only the cells that this needs are flown; empty: all cells.
+  std::optional<BorderSearch> border = std::nullopt;
 };
 
 /// Thread-safe. The flights are processes, which end with this one. They share the memory of the
@@ -51,9 +55,14 @@ class SweepService {
   [[nodiscard]] std::filesystem::path files_folder() const;
   /// As sweep_list. Each entry has "here" too: "flying" or "cancelling" if this server flies it,
   /// else null; and "problem": why its last flight here ended early, else null.
+  /// "envelope" is {"axis","estimator","found"} if only the border along an axis was sought, else
+  /// null.
   [[nodiscard]] nlohmann::json list() const;
   /// One such entry. Errors: as sweep_entry.
   [[nodiscard]] Result<nlohmann::json> entry(const std::string& name) const;
+  /// As json_from(Envelope), its `lines` null until it is found; null if every cell is flown, and
+  /// for a file that cannot be read. @pre entry(name) succeeds
+  [[nodiscard]] nlohmann::json envelope(const std::string& name) const;
   /// The document of a sweep. Errors: kNotFound; as read_sweep_document.
   [[nodiscard]] Result<nlohmann::json> document(const std::string& name) const;
 
@@ -62,13 +71,15 @@ class SweepService {
                                         SweepRefusal& refusal,
                                         const std::atomic<bool>* cancel) const;
   /// Flies a new sweep.
-  /// Errors: kInvalidArgument for the name; kConflict if it exists, or with `refusal`; as check().
+  /// Errors: kInvalidArgument for the name; as check_border; kConflict if it exists, or with
+  /// `refusal`; as check().
   [[nodiscard]] Status start(const std::string& name,
                              const SweepRequest& request,
                              SweepRefusal& refusal,
                              const std::atomic<bool>* cancel);
   /// Flies what a sweep lacks. A null document stands for the sweep's own.
-  /// Errors: kNotFound; kConflict while a process works on it, or with `refusal`; as check().
+  /// Errors: kNotFound; kConflict while a process works on it, or with `refusal`; as check() and
+  /// check_border.
   [[nodiscard]] Status go_on(const std::string& name,
                              const SweepRequest& request,
                              SweepRefusal& refusal,
@@ -84,12 +95,15 @@ class SweepService {
     std::string name;
     ClientSweep sweep;
     std::size_t jobs = 1;
+    std::optional<BorderSearch> border;
     std::atomic<bool> cancel{false};
     bool over = false;  ///< guarded by the service
   };
   [[nodiscard]] Status check_free(SweepRefusal& refusal) const;
   /// @pre the folder exists
-  [[nodiscard]] Status launch(const std::string& name, ClientSweep sweep, std::size_t jobs);
+  [[nodiscard]] Status launch(const std::string& name,
+                              ClientSweep sweep,
+                              const SweepRequest& request);
   void fly(Flight& flight);
   /// Errors: as fly_sweep; kIo.
   [[nodiscard]] Status fly_into(const Flight& flight, const std::filesystem::path& folder);

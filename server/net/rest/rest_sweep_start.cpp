@@ -45,6 +45,13 @@ Result<SweepBody> parse_sweep_body(const std::string& text, Asks asks) {
   if (asks != Asks::kContinue) parsed.file = fields.text("file").value_or("");
   if (const json* document = fields.object("document")) parsed.request.document = *document;
   if (asks != Asks::kCheck) {
+    if (const json* border = fields.object("border")) {
+      JsonFields wanted(*border, "border");
+      wanted.require("axis");
+      parsed.request.border = {wanted.text("axis").value_or(""),
+                               wanted.text("estimator").value_or("")};
+      if (const Status status = wanted.finish(); !status) return status.error();
+    }
     const auto most = static_cast<std::int64_t>(SweepService::most_jobs());
     parsed.request.jobs = static_cast<std::size_t>(fields.integer("jobs", 1, most).value_or(0));
   }
@@ -101,12 +108,18 @@ HttpResponse continue_sweep(SweepService& sweeps,
 }
 
 HttpResponse cost_response(const experiments::SweepCost& cost) {
+  json axes = json::array();
+  for (const auto& [name, label] : cost.border_axes) {
+    axes.push_back({{"name", name}, {"label", label}});
+  }
   return json_response(200,
                        {{"valid", true},
                         {"message", ""},
                         {"faults", json::array()},
                         {"cells", cost.cells},
-                        {"estimators", cost.estimators},
+                        {"estimators", cost.estimators.size()},
+                        {"estimator_names", cost.estimators},
+                        {"border_axes", std::move(axes)},
                         {"flights", cost.flights},
                         {"flight_s", cost.flight_s ? json(*cost.flight_s) : json()}});
 }
@@ -124,6 +137,8 @@ HttpResponse check_sweep(const SweepService& sweeps, SweepBody body, Cancel canc
                         {"faults", field_errors_of(cost.error().message)},
                         {"cells", 0},
                         {"estimators", 0},
+                        {"estimator_names", json::array()},
+                        {"border_axes", json::array()},
                         {"flights", 0},
                         {"flight_s", nullptr}});
 }

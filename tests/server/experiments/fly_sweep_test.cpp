@@ -217,7 +217,7 @@ TEST_F(FlySweep, TheEnvelopeFliesOnlyTheCellsAtTheBorder) {
   EnvelopeOptions options;
   options.flights.folder = folder();
   options.flights.program = program();
-  options.axis = "flight.course.airspeed_m_s";
+  options.border.axis = "flight.course.airspeed_m_s";
   const auto found = find_envelope(grid, options);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_EQ(found->cells, 48U);
@@ -233,16 +233,17 @@ TEST_F(FlySweep, TheEnvelopeFliesOnlyTheCellsAtTheBorder) {
   ASSERT_TRUE(find_envelope(grid, options).ok());
   EXPECT_EQ(flights(), found->cells_needed) << "nothing is flown again";
 
-  options.axis = "seed.x";
-  EXPECT_THAT(
-      find_envelope(grid, options).error().message,
-      HasSubstr("axis = seed.x: must be an axis of the sweep (flight.course.airspeed_m_s, seed)"));
-  options.axis = "flight.course.airspeed_m_s";
-  options.estimator = "none";
+  options.border.axis = "seed.x";
+  EXPECT_THAT(find_envelope(grid, options).error().message,
+              HasSubstr("axis = seed.x: must be an axis of the sweep with at least two values "
+                        "(flight.course.airspeed_m_s, seed)"));
+  options.border.axis = "flight.course.airspeed_m_s";
+  options.border.estimator = "none";
   EXPECT_THAT(find_envelope(grid, options).error().message, HasSubstr("estimator = none"));
   const Sweep skipping = sweep(
       R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [15, 25]}, {"path": "seed", "values": [1, 2]}],
          "skip": [{"flight.course.airspeed_m_s": 25, "seed": 2}])");
+  options.border.estimator.clear();
   EXPECT_THAT(find_envelope(skipping, options).error().message,
               HasSubstr("skip: must leave out no cell"));
 }

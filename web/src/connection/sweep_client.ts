@@ -45,11 +45,11 @@ export class SweepClient {
     return (await this.rest.call('POST', '/sweeps', start)) as SweepEntry;
   }
 
-  /** @param changed  another document and number of flights at a time; {} = the sweep's own */
-  async continue(
-    name: string,
-    changed: { document?: JsonObject; jobs?: number },
-  ): Promise<SweepEntry> {
+  /**
+   * @param changed  another document and number of flights at a time, and the border that is
+   *   sought; {} = the sweep's own, every cell
+   */
+  async continue(name: string, changed: Partial<Omit<SweepStart, 'name'>>): Promise<SweepEntry> {
     return (await this.rest.call('POST', `${placeOf(name)}/continue`, changed)) as SweepEntry;
   }
 

@@ -30,6 +30,8 @@ export interface SweepEntry {
   flying: boolean;
   /** What this server does with it; null = nothing. */
   here: 'flying' | 'cancelling' | null;
+  /** The border of survival that is sought, or was found; null = every cell is flown. */
+  envelope: (BorderSearch & { found: boolean }) | null;
   /** Why its last flight by this server ended early. */
   problem: string | null;
   progress: SweepProgress | null;
@@ -85,8 +87,38 @@ export interface SweepTable {
   conventions: Record<string, { words: string; differences: SweepDifference[] }>;
 }
 
+/** How far along an axis an estimator survives is sought, with few flights. */
+export interface BorderSearch {
+  axis: string;
+  estimator: string;
+}
+
+export interface Envelope {
+  axis: string;
+  label: string;
+  unit: string;
+  estimator: string;
+  cells: number;
+  cells_needed: number;
+  /** null until the border is found. */
+  lines:
+    | {
+        /** Other axis -> value. */
+        at: Record<string, Json>;
+        /** Last value that survives; null = none does. */
+        survives: Json;
+        /** Next value, which fails; null = none does. */
+        fails: Json;
+        /** Survival does not end once. */
+        irregular: boolean;
+      }[]
+    | null;
+}
+
 export interface SweepState {
   sweep: SweepEntry;
+  /** null = every cell is flown. */
+  envelope: Envelope | null;
   /** null before the first flight is over. */
   table: SweepTable | null;
 }
@@ -115,6 +147,9 @@ export interface SweepCheck {
   faults: unknown;
   cells: number;
   estimators: number;
+  estimator_names: string[];
+  /** Axes of which the border of survival can be sought. */
+  border_axes: { name: string; label: string }[];
   /** At most. */
   flights: number;
   /** Mean of one flight by the clock on the wall; null = not known. */
@@ -154,4 +189,6 @@ export interface SweepStart {
   name: string;
   document: JsonObject;
   jobs: number;
+  /** Absent = every cell is flown. */
+  border?: BorderSearch;
 }

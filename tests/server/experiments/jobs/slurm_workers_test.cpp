@@ -44,7 +44,7 @@ class SlurmWorkersTest : public ::testing::Test {
   }
   void set_tasks(int tasks) {
     std::string text;
-    for (int i = 0; i < tasks; ++i) text += "17_" + std::to_string(i) + "\n";
+    for (int i = 0; i < tasks; ++i) text += "17_" + std::to_string(i) + "|RUNNING|None\n";
     write_text(queue(), text);
   }
   std::unique_ptr<SlurmWorkers> open(std::size_t workers = 4) {
@@ -151,6 +151,44 @@ TEST_F(SlurmWorkersTest, ASilentQueueIsReportedOnceAndNothingIsSubmitted) {
   ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
   EXPECT_THAT(warnings_, Contains("squeue answers again"));
   EXPECT_EQ(submissions().size(), 1U);
+}
+
+/// A node with an old task of the same number cannot launch it: Slurm holds the task for ever.
+TEST_F(SlurmWorkersTest, TasksThatSlurmCouldNotLaunchAreReplaced) {
+  const auto workers = open();
+  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  write_text(queue(), "17_0|PENDING|launch failed requeued held\n17_1|RUNNING|None\n");
+  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  EXPECT_THAT(read_text(calls()),
+              ::testing::ContainsRegex("scancel --name=overfly-[0-9a-f]+ "
+                                       "--state=PENDING 17_0\n"));
+  ASSERT_EQ(submissions().size(), 2U);
+  EXPECT_THAT(submissions()[1], HasSubstr("--array=0-0 "));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("could not launch 1 task")));
+}
+
+TEST_F(SlurmWorkersTest, SaysForWhatAllTasksWait) {
+  const auto workers = open();
+  const std::string down = "Nodes required for job are DOWN, DRAINED or reserved";
+  for (int i = 0; i < 3; ++i) {
+    write_text(queue(), "17_0|PENDING|" + down + "\n17_1|PENDING|Priority\n");
+    ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  }
+  EXPECT_THAT(warnings_, ElementsAre("no task runs; Slurm's reason: " + down)) << "once";
+  write_text(queue(), "17_0|RUNNING|None\n17_1|PENDING|" + down + "\n");
+  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  EXPECT_EQ(warnings_.size(), 1U) << "one runs";
+  write_text(queue(), "17_0|PENDING|JobHeldUser\n17_1|PENDING|JobHeldUser\n");
+  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  EXPECT_EQ(warnings_.back(), "no task runs; Slurm's reason: JobHeldUser");
+  EXPECT_TRUE(submissions().empty()) << "what somebody holds is not replaced";
+}
+
+TEST_F(SlurmWorkersTest, OnlyNumbersOfTasksAreCancelled) {
+  const auto workers = open();
+  write_text(queue(), "--user=root|PENDING|launch failed requeued held\n|||\n\n17_2\n");
+  ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
+  EXPECT_THAT(read_text(calls()), ::testing::Not(HasSubstr("scancel")));
 }
 
 TEST_F(SlurmWorkersTest, TasksThatEndWithoutAFlightAreAnError) {

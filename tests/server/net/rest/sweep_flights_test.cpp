@@ -71,6 +71,77 @@ TEST_F(SweepRoutesTest, ExtendsASweepWithAChangedDocument) {
   EXPECT_EQ(lines("calls").size(), 4U) << "only the fourth cell was flown";
 }
 
+/// The program's flights all survive: two of twenty seeds are needed, then one more as its
+/// neighbour.
+TEST_F(SweepRoutesTest, FliesOnlyTheBorderAlongAnAxis) {
+  json seeds = json::array();
+  for (int seed = 1; seed <= 20; ++seed) seeds.push_back(seed);
+  const json axes = json::array({{{"path", "seed"}, {"values", seeds}}});
+  const json wanted = {{"name", "border"},
+                       {"document", document({{"axes", axes}})},
+                       {"border", {{"axis", "seed"}}},
+                       {"jobs", 1}};
+  ASSERT_EQ(post(kSweepRoute, wanted).status, 201);
+  const json sweep = ended("border");
+  EXPECT_EQ(sweep.at("problem"), nullptr);
+  EXPECT_EQ(sweep.at("envelope").at("axis"), "seed");
+  EXPECT_EQ(sweep.at("envelope").at("found"), true);
+  const std::string route = std::string(kSweepRoute) + "/border";
+  const json envelope = ask(server_->port(), "GET", route).json().at("envelope");
+  EXPECT_EQ(envelope.at("cells"), 20);
+  const std::size_t needed = envelope.at("cells_needed");
+  EXPECT_LE(needed, 6U);
+  EXPECT_EQ(lines("calls").size(), needed);
+  EXPECT_EQ(sweep.at("progress").at("passed"), needed) << "of the whole sweep";
+  EXPECT_EQ(sweep.at("progress").at("most"), 20);
+  const json line = envelope.at("lines").at(0);
+  EXPECT_EQ(line.at("survives"), 20);
+  EXPECT_EQ(line.at("fails"), nullptr);
+
+  ASSERT_EQ(post_to("border", "continue").status, 202) << "without border the rest is flown";
+  EXPECT_EQ(ended("border").at("progress").at("passed"), 20);
+  EXPECT_EQ(lines("calls").size(), 20U);
+  EXPECT_EQ(entry("border").at("envelope").at("found"), true);
+  const json other = document({{"axes", axes}, {"title", "Another one"}});
+  ASSERT_EQ(post(route + "/continue", {{"document", other}}).status, 202);
+  EXPECT_EQ(ended("border").at("envelope"), nullptr) << "it was that of another document";
+}
+
+TEST_F(SweepRoutesTest, ABorderIsCheckedBeforeTheFlight) {
+  const auto refused = [&](const json& border, const json& fields = json::object()) {
+    const Answer answer =
+        post(kSweepRoute, {{"name", "border"}, {"document", document(fields)}, {"border", border}});
+    EXPECT_EQ(answer.status, 400) << answer.body;
+    EXPECT_FALSE(fs::exists(server_->folder() / "sweeps/border")) << border;
+    return answer.body;
+  };
+  EXPECT_THAT(refused({{"axis", "height"}}), HasSubstr("border.axis = height: must be an axis"));
+  EXPECT_THAT(refused({{"axis", "seed"}, {"estimator", "x"}}), HasSubstr("border.estimator = x"));
+  EXPECT_THAT(refused(json::object()), HasSubstr("border.axis"));
+  EXPECT_THAT(refused({{"axis", "seed"}, {"along", 1}}), HasSubstr("border.along"));
+  const json one = json::array({{{"path", "seed"}, {"values", {1}}}});
+  EXPECT_THAT(refused({{"axis", "seed"}}, {{"axes", one}}), HasSubstr("at least two values"));
+  const Answer check = post("/api/v1/sweep-check", {{"document", document()}});
+  EXPECT_EQ(check.json().at("border_axes").at(0).at("name"), "seed") << check.body;
+  EXPECT_EQ(check.json().at("estimator_names").size(), 1U);
+}
+
+TEST_F(SweepRoutesTest, ACancelledBorderIsContinued) {
+  block();
+  const json wanted = {
+      {"name", "border"}, {"document", document()}, {"border", {{"axis", "seed"}}}, {"jobs", 1}};
+  ASSERT_EQ(post(kSweepRoute, wanted).status, 201);
+  wait_for_calls(1);
+  ASSERT_EQ(post_to("border", "cancel").status, 202);
+  const json stopped = ended("border");
+  EXPECT_EQ(stopped.at("problem"), nullptr);
+  EXPECT_EQ(stopped.at("envelope").at("found"), false);
+  unblock();
+  const std::string route = std::string(kSweepRoute) + "/border/continue";
+  ASSERT_EQ(post(route, {{"border", {{"axis", "seed"}}}}).status, 202);
+  EXPECT_EQ(ended("border").at("envelope").at("found"), true);
+}
+
 TEST_F(SweepRoutesTest, FliesOneSweepAtATime) {
   block();
   ASSERT_EQ(start("first").status, 201);

@@ -62,10 +62,16 @@ export class SweepDesk {
     await this.open();
   }
 
-  /** Flies what a sweep lacks. */
+  /** Flies what a sweep lacks; a border that was not found is sought on. */
   async continue(name: string): Promise<void> {
+    const sought = this.page.sweeps?.find((sweep) => sweep.name === name)?.envelope ?? null;
     try {
-      await this.client.continue(name, {});
+      await this.client.continue(
+        name,
+        sought === null || sought.found
+          ? {}
+          : { border: { axis: sought.axis, estimator: sought.estimator } },
+      );
     } catch (error) {
       this.notices.error(errorText(error));
     }
@@ -180,11 +186,14 @@ export class SweepDesk {
   /** Says which sweeps ended; those that the viewer cancelled are not announced. */
   private announceEnded(before: readonly SweepEntry[], now: readonly SweepEntry[]): void {
     const flew = new Set(before.filter(({ flying }) => flying).map(({ name }) => name));
-    for (const { name, title, flying, progress, problem } of now) {
+    for (const { name, title, flying, progress, problem, envelope } of now) {
       if (flying || !flew.has(name) || this.cancelled.has(name)) continue;
       const shown = title === '' ? name : title;
       if (problem !== null) {
         this.notices.error(`${shown}: the sweep failed. ${problem}`);
+      } else if (envelope?.found === true) {
+        const flights = `${progress?.passed ?? 0} of ${progress?.most ?? 0} flights`;
+        this.notices.info(`${shown}: the border is found, with ${flights}.`);
       } else if (progress !== null && progress.passed < progress.most) {
         const flights = `${progress.passed} of ${progress.most} flights`;
         this.notices.info(`${shown}: the sweep stopped after ${flights}.`);

@@ -4,7 +4,7 @@ import type { SweepClient } from '../../connection/sweep_client';
 import type { FieldError } from '../../protocol/field_errors';
 import { readFieldErrors } from '../../protocol/field_errors';
 import type { Json, JsonObject } from '../../protocol/rest_types';
-import type { SweepCheck, SweepFiles } from '../../protocol/sweep_types';
+import type { BorderSearch, SweepCheck, SweepFiles } from '../../protocol/sweep_types';
 import type { Store } from '../state';
 
 const kPause_ms = 500;
@@ -24,6 +24,8 @@ export interface SweepFormState {
   /** Increases when the text is replaced by other means than typing. */
   loaded: number;
   jobs: number;
+  /** What is flown: the border along an axis; '' = every cell. The estimator: '' = the first. */
+  border: BorderSearch;
   /** null while the text is checked, and if it has errors. */
   cost: SweepCheck | null;
   checking: boolean;
@@ -62,6 +64,8 @@ export class SweepForm {
     try {
       form.files = await this.client.files();
       form.jobs = form.files.jobs.default;
+      const sought = this.store.state.sweepPage.sweeps?.find((one) => one.name === name)?.envelope;
+      if (sought) form.border = { axis: sought.axis, estimator: sought.estimator };
       this.load(form, await this.client.document(name));
     } catch (error) {
       form.errors = fieldErrorsOf(error);
@@ -106,6 +110,13 @@ export class SweepForm {
     this.changed();
   }
 
+  setBorder(border: Partial<BorderSearch>): void {
+    const { form } = this;
+    if (form === null) return;
+    form.border = { ...form.border, ...border };
+    this.changed();
+  }
+
   /** Checks the text after a pause in typing. */
   setText(text: string): void {
     const { form } = this;
@@ -132,9 +143,10 @@ export class SweepForm {
     form.starting = true;
     this.changed();
     try {
-      const { name, jobs, changes } = form;
-      if (changes === null) await this.client.start({ name, document: document.value, jobs });
-      else await this.client.continue(changes, { document: document.value, jobs });
+      const { name, changes } = form;
+      const what = { document: document.value, jobs: form.jobs, ...borderOf(form) };
+      if (changes === null) await this.client.start({ name, ...what });
+      else await this.client.continue(changes, what);
       if (this.form === form) this.close();
       await this.started(changes ?? name);
       return true;
@@ -159,6 +171,7 @@ export class SweepForm {
       text: '',
       loaded: 0,
       jobs: 1,
+      border: { axis: '', estimator: '' },
       cost: null,
       checking: false,
       starting: false,
@@ -198,6 +211,7 @@ export class SweepForm {
       const check = await this.client.check(document.value, signal);
       if (signal.aborted) return;
       form.cost = check.valid ? check : null;
+      if (check.valid) leaveUnknown(form, check);
       form.errors = check.valid ? [] : faultsOf(check);
     } catch (error) {
       if (signal.aborted) return;
@@ -223,6 +237,18 @@ export class SweepForm {
   private changed(): void {
     this.store.change('sweeps');
   }
+}
+
+/** A changed document may lack what was chosen. */
+function leaveUnknown({ border }: SweepFormState, check: SweepCheck): void {
+  if (!check.border_axes.some(({ name }) => name === border.axis)) border.axis = '';
+  if (!check.estimator_names.includes(border.estimator)) border.estimator = '';
+}
+
+function borderOf({ border, cost }: SweepFormState): { border?: BorderSearch } {
+  if (border.axis === '') return {};
+  const estimator = border.estimator === '' ? cost?.estimator_names[0] : border.estimator;
+  return { border: { axis: border.axis, estimator: estimator ?? '' } };
 }
 
 /** Faults by field, or the message as a whole where no field is named. */

@@ -27,6 +27,9 @@ export class SweepFormView {
     min: 1,
     step: 1,
   });
+  private readonly border = h('select', { 'data-role': 'sweep-border' });
+  private readonly borderOf = h('select', { 'data-role': 'sweep-border-of' });
+  private readonly borderOfLabel = h('label', { hidden: true }, 'Estimator', this.borderOf);
   private readonly text = h('textarea', {
     'data-role': 'sweep-text',
     spellcheck: 'false',
@@ -47,6 +50,10 @@ export class SweepFormView {
     this.file.addEventListener('change', () => void form.chooseFile(this.file.value));
     this.name.addEventListener('input', () => form.setName(this.name.value));
     this.jobs.addEventListener('input', () => form.setJobs(this.jobs.valueAsNumber));
+    this.border.addEventListener('change', () => form.setBorder({ axis: this.border.value }));
+    this.borderOf.addEventListener('change', () =>
+      form.setBorder({ estimator: this.borderOf.value }),
+    );
     this.text.addEventListener('input', () => form.setText(this.text.value));
     this.start.addEventListener('click', () => void form.start());
     this.fileLabel = h('label', {}, 'Sweep file', this.file);
@@ -60,6 +67,13 @@ export class SweepFormView {
         this.fileLabel,
         h('label', {}, 'Name', this.name),
         h('label', { title: 'Flights at the same time' }, 'At a time', this.jobs),
+        h(
+          'label',
+          { title: 'The border of survival needs only some cells: it is found by bisection' },
+          'Fly',
+          this.border,
+        ),
+        this.borderOfLabel,
       ),
       this.description,
       this.text,
@@ -85,6 +99,7 @@ export class SweepFormView {
     const flying = page.sweeps?.find(({ here }) => here !== null)?.name ?? null;
     if (this.shown !== form || this.loaded !== form.loaded) this.load(form);
     this.drawFiles(form);
+    this.drawBorder(form);
     this.drawErrors(form);
     this.name.disabled = form.changes !== null;
     this.jobs.max = String(form.files?.jobs.most ?? 1);
@@ -124,6 +139,26 @@ export class SweepFormView {
     setText(this.description, changes === null ? (chosen?.description ?? '') : extends_it);
   }
 
+  /** What was chosen stays while the text is checked again. */
+  private drawBorder({ border, cost }: SweepFormState): void {
+    if (cost !== null) {
+      const { border_axes, estimator_names } = cost;
+      rebuild(this.border, JSON.stringify(border_axes), () => [
+        h('option', { value: '' }, 'every cell'),
+        ...border_axes.map(({ name, label }) =>
+          h('option', { value: name }, `the border along ${label}`),
+        ),
+      ]);
+      rebuild(this.borderOf, JSON.stringify(estimator_names), () =>
+        estimator_names.map((name) => h('option', { value: name }, name)),
+      );
+    }
+    this.border.disabled = cost === null;
+    this.border.value = border.axis;
+    this.borderOfLabel.hidden = border.axis === '' || this.borderOf.options.length < 2;
+    if (border.estimator !== '') this.borderOf.value = border.estimator;
+  }
+
   private drawErrors({ errors }: SweepFormState): void {
     rebuild(this.errors, JSON.stringify(errors), () =>
       errors.map((error) =>
@@ -140,17 +175,17 @@ function inDocument({ field }: FieldError): boolean {
 }
 
 /** "6 cells × 4 estimators, at most 6 flights, about 2 min" */
-function costText({ cost, checking, jobs }: SweepFormState, flying: string | null): string {
+function costText({ cost, checking, jobs, border }: SweepFormState, flying: string | null): string {
   if (checking) return 'Checking every cell';
   if (cost === null) return '';
   const { cells, estimators, flights, flight_s } = cost;
   const texts = [
     counted(cells, 'cell'),
     counted(estimators, 'estimator'),
-    `at most ${counted(flights, 'flight')}`,
+    border.axis === '' ? `at most ${counted(flights, 'flight')}` : 'only the cells at the border',
     flight_s === null
       ? 'duration not known before the first flight'
-      : `about ${formatDuration((flight_s * flights) / Math.min(jobs, flights))}`,
+      : `${border.axis === '' ? 'about' : 'less than'} ${formatDuration((flight_s * flights) / Math.min(jobs, flights))}`,
   ];
   if (flying !== null) texts.push(`${flying} is flying: one sweep flies at a time`);
   return texts.join(' · ');

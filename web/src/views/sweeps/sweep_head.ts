@@ -12,6 +12,7 @@ const kRunStatus: Record<SweepPhase, string> = {
   cancelling: 'cancelled',
   failed: 'failed',
   stopped: 'cancelled',
+  'border found': 'completed',
   complete: 'completed',
 };
 
@@ -109,7 +110,7 @@ export class SweepHead {
   }
 
   private continueButton(
-    { name }: SweepEntry,
+    { name, envelope }: SweepEntry,
     unfinished: boolean,
     hint: string | null,
   ): HTMLElement {
@@ -119,10 +120,14 @@ export class SweepHead {
         class: 'primary',
         'data-role': 'continue-sweep',
         disabled: hint !== null,
-        title: hint ?? 'Fly what the sweep lacks; failed flights are tried again',
+        title: hint ?? continueHint(envelope),
         onclick: () => void this.context.sweeps.continue(name),
       },
-      unfinished ? 'Continue' : 'Fly failed flights again',
+      !unfinished
+        ? 'Fly failed flights again'
+        : envelope?.found === true
+          ? 'Fly the other cells'
+          : 'Continue',
     );
   }
 
@@ -170,12 +175,25 @@ export class SweepHead {
   }
 }
 
-export type SweepPhase = 'flying' | 'cancelling' | 'failed' | 'stopped' | 'complete';
+function continueHint(envelope: SweepEntry['envelope']): string {
+  return envelope !== null && !envelope.found
+    ? 'Look on for the border; failed flights are tried again'
+    : 'Fly what the sweep lacks; failed flights are tried again';
+}
+
+export type SweepPhase =
+  | 'flying'
+  | 'cancelling'
+  | 'failed'
+  | 'stopped'
+  | 'border found'
+  | 'complete';
 
 /** `stopped`: cancelled or killed before its end. */
-export function stateOf({ flying, here, problem, progress }: SweepEntry): SweepPhase {
+export function stateOf({ flying, here, problem, progress, envelope }: SweepEntry): SweepPhase {
   if (here !== null) return here;
   if (flying) return 'flying';
   if (problem !== null) return 'failed';
-  return progress === null || progress.passed < progress.most ? 'stopped' : 'complete';
+  if (progress !== null && progress.passed >= progress.most) return 'complete';
+  return envelope?.found === true ? 'border found' : 'stopped';
 }

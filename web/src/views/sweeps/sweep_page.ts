@@ -15,6 +15,7 @@ import {
 import { h, rebuild, setText } from '../dom';
 import type { Context, View } from '../view';
 import { labelled, select } from './sweep_controls';
+import { EnvelopeView } from './envelope_view';
 import { SweepFormView } from './sweep_form_view';
 import { stateOf, SweepHead } from './sweep_head';
 import { SweepResultsView } from './sweep_results_view';
@@ -28,6 +29,7 @@ export class SweepPageView implements View {
   private readonly tools = h('div', { class: 'sweep-tools' });
   private readonly matrices = h('div', { class: 'sweep-matrices' });
   private readonly flights = h('section', { class: 'sweep-flights', 'aria-label': 'Flights' });
+  private readonly envelope = new EnvelopeView();
   private readonly differences = h('section', { class: 'sweep-differences' });
   private readonly results: SweepResultsView;
   private readonly message = h('div', { class: 'log-message', 'data-role': 'sweep-message' });
@@ -57,6 +59,7 @@ export class SweepPageView implements View {
           { class: 'sweep-body' },
           this.matrices,
           this.flights,
+          this.envelope.root,
           this.differences,
           this.results.root,
         ),
@@ -80,6 +83,7 @@ export class SweepPageView implements View {
       part.hidden = shown === null;
     }
     this.results.root.hidden = shown === null || shown.table === null;
+    this.envelope.draw(shown);
     if (shown === null) {
       this.flights.hidden = true;
       this.differences.hidden = true;

@@ -62,10 +62,10 @@ export class SweepResultsView {
           ? []
           : [
               labelled(
-                'Beside',
+                'Published errors',
                 select(
                   'sweep-published',
-                  [['', 'nothing'], ...published.map(same)],
+                  [['', 'none'], ...published.map(same)],
                   publishedName,
                   (text) => this.context.sweeps.results.set({ publishedName: text }),
                 ),

@@ -15,12 +15,14 @@ const entry = (name: string, flying = false) => ({
   flying,
   here: null as 'flying' | 'cancelling' | null,
   problem: null as string | null,
+  envelope: null as { axis: string; estimator: string; found: boolean } | null,
   progress: null as { passed: number; most: number } | null,
   changed_utc: '',
 });
 
 let store: Store;
 let asked: string[];
+let sent: unknown[];
 let sweeps: ReturnType<typeof entry>[];
 let failing: boolean;
 let waiting: { callback: () => void; delay_ms: number }[];
@@ -37,6 +39,7 @@ const next = async () => {
 beforeEach(() => {
   store = new Store();
   asked = [];
+  sent = [];
   sweeps = [entry('b', true), entry('a')];
   failing = false;
   waiting = [];
@@ -46,6 +49,7 @@ beforeEach(() => {
   notices.error.mockClear();
   const rest = new RestClient('api', (url, init) => {
     asked.push(init?.method === 'GET' ? url : `${init?.method} ${url}`);
+    if (typeof init?.body === 'string') sent.push(JSON.parse(init.body));
     if (refused && init?.method === 'POST') {
       const error = { code: 'sweep_flying', message: 'sweep "b" is flying' };
       return Promise.resolve(Response.json({ error }, { status: 429 }));
@@ -118,6 +122,23 @@ describe('SweepDesk', () => {
     refused = true;
     await desk.continue('a');
     expect(notices.error).toHaveBeenCalledWith('sweep "b" is flying');
+  });
+
+  it('looks on for a border that was not found, and flies the other cells of one that was', async () => {
+    const sought = { axis: 'h', estimator: 'feature', found: false };
+    sweeps = [{ ...entry('a'), envelope: sought }];
+    await desk.open();
+    await desk.continue('a');
+    sweeps = [{ ...entry('a', true), envelope: sought }];
+    waiting = waiting.slice(-1);
+    await next();
+    sweeps = [
+      { ...entry('a'), envelope: { ...sought, found: true }, progress: { passed: 3, most: 8 } },
+    ];
+    await next();
+    expect(notices.info).toHaveBeenLastCalledWith('a: the border is found, with 3 of 8 flights.');
+    await desk.continue('a');
+    expect(sent).toEqual([{ border: { axis: 'h', estimator: 'feature' } }, {}]);
   });
 
   it('keeps the chosen sweep, and forgets the cell of another', async () => {

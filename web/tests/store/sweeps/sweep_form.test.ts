@@ -11,6 +11,8 @@ const kCost = {
   faults: [],
   cells: 2,
   estimators: 1,
+  estimator_names: ['feature'],
+  border_axes: [{ name: 'h', label: 'Height' }],
   flights: 2,
   flight_s: null,
 };
@@ -79,6 +81,26 @@ describe('SweepForm', () => {
     await settle();
     expect(shown()).toMatchObject({ file: 'quick', name: 'quick_2', jobs: 2, cost: kCost });
     expect(JSON.parse(shown().text)).toEqual(kDocument);
+  });
+
+  it('starts the search of a border along an axis that the document has', async () => {
+    await form.open();
+    await settle();
+    form.setBorder({ axis: 'h' });
+    await form.start();
+    const { body } = asked.find(({ call }) => call === 'POST api/sweeps') ?? {};
+    expect(body).toMatchObject({ border: { axis: 'h', estimator: 'feature' } });
+    await form.open();
+    await settle();
+    form.setBorder({ axis: 'h' });
+    check = { ...kCost, border_axes: [] };
+    form.setText('{}');
+    waiting.pop()?.();
+    await settle();
+    expect(shown().border.axis).toBe('');
+    asked = [];
+    await form.start();
+    expect(asked.at(-1)?.body).not.toHaveProperty('border');
   });
 
   it('checks after a pause in typing, once', async () => {

@@ -58,10 +58,12 @@ function state(rows: SweepRow[], values: { h: number[]; v: number[]; air: string
       ],
       flying: false,
       here: null,
+      envelope: null,
       problem: null,
       progress: null,
       changed_utc: '2026-11-25T00:00:00Z',
     },
+    envelope: null,
     table: { failed: 0, unreadable: 0, rows, conventions: {} },
   };
 }
