@@ -108,7 +108,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
       const { flight, estimators } = JSON.parse(answer.toString());
       const { alignments, outcome, coverage } = estimators.feature;
       const own = rows.filter(({ run }) => run === id);
-      assert.deepEqual(own.map(({ alignment }) => alignment).toSorted(), Object.keys(alignments));
+      assert.deepEqual(own.map(({ alignment }) => alignment).sort(), Object.keys(alignments));
       for (const row of own) {
         const errors = alignments[row.alignment];
         const percent_of_path = (100 * errors.position_rmse_m) / flight.path_length_m;

@@ -292,6 +292,10 @@ describe('links', { skip, timeout: 600_000 }, () => {
     await page.getByRole('button', { name: 'Show flat' }).click();
     await page.getByRole('button', { name: 'Show drifts' }).click();
     await untilWritten('compare');
+    await dashboard.until(() => {
+      const hidden = new URLSearchParams(location.hash.slice(1)).getAll('hide').join();
+      return hidden.includes('flat') && !hidden.includes('drifts');
+    });
     await elsewhere(await page.evaluate(() => location.hash), async (other) => {
       await other.page.locator('[data-panel=plots] .alignment-legend').waitFor();
       await other.until((count) => document.querySelectorAll('[data-panel=plots] .alignment-legend span').length === count, 2);

@@ -29,7 +29,7 @@ function fly(runs) {
   return {};
 }
 
-const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 describe('a thousand runs', { skip, timeout: 600_000 }, () => {
   let stage;
@@ -112,7 +112,7 @@ describe('a thousand runs', { skip, timeout: 600_000 }, () => {
     );
     await dashboard.screenshot('many_runs_filtered_1600x900');
     await page.locator('#run-order').selectOption('largest-error');
-    const worst = lost.toSorted(
+    const worst = [...lost].sort(
       (a, b) => b.results[0].position_rmse_m - a.results[0].position_rmse_m,
     );
     assert.equal((await entries())[0], worst[0].id);

@@ -86,7 +86,7 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
     let numbers = 0;
     for (const [name, { alignments }] of Object.entries(printed)) {
       const own = rows.filter(({ estimate }) => estimate === name);
-      assert.deepEqual(own.map(({ alignment }) => alignment).toSorted(), Object.keys(alignments));
+      assert.deepEqual(own.map(({ alignment }) => alignment).sort(), Object.keys(alignments));
       for (const row of own) {
         numbers += assertFigures(row, alignments[row.alignment], [
           'truth',

@@ -66,7 +66,7 @@ function figuresOf(errors) {
 export function assertFigures(row, errors, texts) {
   const figures = figuresOf(errors);
   const columns = Object.keys(row).filter((name) => !texts.includes(name) && name !== 'honesty');
-  assert.deepEqual(columns.toSorted(), [...figures.keys()].toSorted());
+  assert.deepEqual([...columns].sort(), [...figures.keys()].sort());
   assert.equal(row.honesty, errors.consistency?.honesty ?? '');
   let numbers = 0;
   for (const [name, expected] of figures) {
