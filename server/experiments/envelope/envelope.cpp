@@ -115,6 +115,25 @@ void write_whole_progress(const Sweep& sweep, const fs::path& folder, const Swee
   (void)write_progress(folder, progress);
 }
 
+bool is_line(const Json& line) {
+  return line.is_object() && line.contains("at") && line["at"].is_object() &&
+         line.contains("survives") && line.contains("fails") && line.contains("irregular") &&
+         line["irregular"].is_boolean();
+}
+
+/// @pre it is an object
+bool is_envelope(const Json& document) {
+  for (const char* name : {"axis", "label", "unit", "estimator"}) {
+    if (!document.contains(name) || !document[name].is_string()) return false;
+  }
+  for (const char* name : {"cells", "cells_needed"}) {
+    if (!document.contains(name) || !document[name].is_number_unsigned()) return false;
+  }
+  if (!document.contains("lines")) return false;
+  const Json& lines = document["lines"];
+  return lines.is_null() || (lines.is_array() && std::all_of(lines.begin(), lines.end(), is_line));
+}
+
 fs::path envelope_file(const fs::path& folder) { return folder / "envelope.json"; }
 
 }  // namespace
@@ -257,12 +276,7 @@ void remove_envelope(const fs::path& folder) {
 Result<Json> read_envelope(const fs::path& folder) {
   Result<Json> document = read_json(envelope_file(folder), kMaxEnvelopeBytes);
   if (!document) return document.error();
-  const auto has_text = [&](const char* name) {
-    return document->contains(name) && (*document)[name].is_string();
-  };
-  const bool valid = document->is_object() && has_text("axis") && has_text("estimator") &&
-                     document->contains("lines") &&
-                     ((*document)["lines"].is_array() || (*document)["lines"].is_null());
+  const bool valid = document->is_object() && is_envelope(*document);
   if (valid) return document;
   return Error{ErrorCode::kUnreadable, envelope_file(folder).string() + ": is no envelope"};
 }

@@ -29,13 +29,21 @@ Status write_summary(const Sweep& sweep, const FlownSweep& flown, const fs::path
   return write_whole(folder / "summary.md", table);
 }
 
-/// What is sought or was found; null if every cell is flown.
-Json envelope_entry(const fs::path& folder) {
-  const Result<Json> envelope = read_envelope(folder);
+/// The border that is sought or was found, as json_from(Envelope). Null if every cell is flown, for
+/// a file that cannot be read, and if the sweep has other cells since.
+/// @param entry  of the sweep
+Json envelope_of(const fs::path& folder, const Json& entry) {
+  Result<Json> envelope = read_envelope(folder);
   if (!envelope) return nullptr;
-  return {{"axis", (*envelope)["axis"]},
-          {"estimator", (*envelope)["estimator"]},
-          {"found", !(*envelope)["lines"].is_null()}};
+  std::size_t cells = 1;
+  bool has_axis = false;
+  for (const Json& axis : entry.at("axes")) {
+    cells *= axis.at("values").size();
+    has_axis = has_axis || axis.at("name") == (*envelope)["axis"];
+  }
+  const bool found = !(*envelope)["lines"].is_null();
+  if (!has_axis || (found && (*envelope)["cells"] != cells)) return nullptr;
+  return std::move(*envelope);
 }
 
 }  // namespace
@@ -52,6 +60,11 @@ std::size_t SweepService::default_jobs() { return std::max<std::size_t>(1, most_
 fs::path SweepService::files_folder() const { return sweep_files_folder(runs_.library().folder()); }
 
 void SweepService::add_state(Json& entry) const {
+  const Json envelope = this->envelope(entry);
+  entry["envelope"] = envelope.is_null() ? Json()
+                                         : Json{{"axis", envelope.at("axis")},
+                                                {"estimator", envelope.at("estimator")},
+                                                {"found", !envelope.at("lines").is_null()}};
   const std::lock_guard lock(mutex_);
   const auto& name = entry.at("name").get_ref<const std::string&>();
   entry["here"] = nullptr;
@@ -59,7 +72,6 @@ void SweepService::add_state(Json& entry) const {
     entry["here"] = flight_->cancel ? "cancelling" : "flying";
     entry["flying"] = true;
   }
-  entry["envelope"] = envelope_entry(folder_ / name);
   const auto problem = problems_.find(name);
   entry["problem"] = problem == problems_.end() ? Json() : Json(problem->second);
 }
@@ -76,9 +88,8 @@ Result<Json> SweepService::entry(const std::string& name) const {
   return entry;
 }
 
-Json SweepService::envelope(const std::string& name) const {
-  Result<Json> envelope = read_envelope(folder_ / name);
-  return envelope ? std::move(*envelope) : Json();
+Json SweepService::envelope(const Json& entry) const {
+  return envelope_of(folder_ / entry.at("name").get_ref<const std::string&>(), entry);
 }
 
 Result<Json> SweepService::document(const std::string& name) const {

@@ -60,9 +60,10 @@ class SweepService {
   [[nodiscard]] nlohmann::json list() const;
   /// One such entry. Errors: as sweep_entry.
   [[nodiscard]] Result<nlohmann::json> entry(const std::string& name) const;
-  /// As json_from(Envelope), its `lines` null until it is found; null if every cell is flown, and
-  /// for a file that cannot be read. @pre entry(name) succeeds
-  [[nodiscard]] nlohmann::json envelope(const std::string& name) const;
+  /// As json_from(Envelope), its `lines` null until it is found; null if every cell is flown, for a
+  /// file that cannot be read, and if the sweep has other cells since.
+  /// @param entry  of a sweep
+  [[nodiscard]] nlohmann::json envelope(const nlohmann::json& entry) const;
   /// The document of a sweep. Errors: kNotFound; as read_sweep_document.
   [[nodiscard]] Result<nlohmann::json> document(const std::string& name) const;
 

@@ -68,9 +68,10 @@ void add_sweep_routes(RestRouter* router, const SweepRoutes& routes) {
               if (!entry) return entry.error();
               Result<json> table = table_of(routes.folder, name, cancel);
               if (!table) return table.error();
+              json envelope = routes.sweeps->envelope(*entry);
               return json{{"sweep", std::move(*entry)},
                           {"table", std::move(*table)},
-                          {"envelope", routes.sweeps->envelope(name)}};
+                          {"envelope", std::move(envelope)}};
             });
       });
 }

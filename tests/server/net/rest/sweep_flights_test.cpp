@@ -107,6 +107,24 @@ TEST_F(SweepRoutesTest, FliesOnlyTheBorderAlongAnAxis) {
   EXPECT_EQ(ended("border").at("envelope"), nullptr) << "it was that of another document";
 }
 
+TEST_F(SweepRoutesTest, ABorderOfOtherCellsOrADamagedOneIsNotShown) {
+  const json wanted = {
+      {"name", "border"}, {"document", document()}, {"border", {{"axis", "seed"}}}, {"jobs", 1}};
+  ASSERT_EQ(post(kSweepRoute, wanted).status, 201);
+  ASSERT_EQ(ended("border").at("envelope").at("found"), true);
+  const fs::path file = server_->folder() / "sweeps/border/envelope.json";
+  const std::string route = std::string(kSweepRoute) + "/border";
+  json envelope = json::parse(read_text(file));
+  envelope["cells"] = 4;
+  write_text(file, envelope.dump());
+  EXPECT_EQ(entry("border").at("envelope"), nullptr) << "the sweep has three cells";
+  for (const char* text : {"{", "[]", R"({"axis":"seed"})", R"({"lines":[7]})"}) {
+    write_text(file, text);
+    EXPECT_EQ(entry("border").at("envelope"), nullptr) << text;
+    EXPECT_EQ(ask(server_->port(), "GET", route).json().at("envelope"), nullptr) << text;
+  }
+}
+
 TEST_F(SweepRoutesTest, ABorderIsCheckedBeforeTheFlight) {
   const auto refused = [&](const json& border, const json& fields = json::object()) {
     const Answer answer =
