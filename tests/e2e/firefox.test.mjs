@@ -1,15 +1,25 @@
 // The main flows in Firefox: a finished flight, its pictures, plots and playback, the pages, the themes;
 // and the pictures where the browser has no WebCodecs.
 import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { FirefoxDashboard, firefoxMissing, openFirefox } from './support/firefox.mjs';
 import { flyCourse } from './support/flights.mjs';
-import { makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
+import { callServer, makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kRun = '20260101-000001-fox';
 const kFlight_s = 10;
 const kRate_hz = 31;
+const kSweep = {
+  format_version: 1,
+  title: 'Two heights',
+  scenario: 'course',
+  set: { duration_s: 3, 'camera.width_px': 320, 'camera.height_px': 240 },
+  axes: [{ path: 'flight.course.height_agl_m', label: 'Height', unit: 'm', values: [100, 300] }],
+  estimators: [{ name: 'feature', type: 'feature' }],
+};
 const kPages = ['calibration', 'missions', 'sweeps', 'scores'];
 
 let dashboard;
@@ -194,6 +204,64 @@ describe('the dashboard in Firefox', { skip, timeout: 600_000 }, () => {
     await page.reload();
     await page.waitForSelector('.menu[data-layout=camera]');
     assert.notEqual(await back(), dark);
+  });
+
+  step('launches a flight and compares it with the first', async () => {
+    await page.goto('about:blank');
+    await dashboard.open(`${server.url}/#run=${kRun}&layout=fly&t=1`);
+    await dashboard.untilSameInstant();
+    await page.waitForSelector('#scenario option[value=course]');
+    await page.select('#scenario', 'course');
+    await page.waitForSelector('.fields[data-scenario=course]');
+    await page.locator('[id="field-duration_s"]').fill('3');
+    await page.locator('aria/Launch flight').click();
+    await dashboard.until(
+      (first) => {
+        const runs = [...document.querySelectorAll('.run')].filter((run) => run.dataset.run !== first);
+        return runs.some((run) => run.dataset.status === 'completed');
+      },
+      kRun,
+      120_000,
+    );
+    const flown = await page.$$eval('.run', (runs) => runs.map((run) => run.dataset.run));
+    const [launched] = flown.filter((id) => id !== kRun);
+    await page.locator(`.run[data-run="${kRun}"] .run-open`).click();
+    await dashboard.until((id) => location.hash.includes(id), kRun);
+    await page.locator(`.run[data-run="${launched}"] .compare`).click();
+    await page.waitForSelector(`[data-shown-run="${launched}"]`);
+    await dashboard.until(() => document.querySelectorAll('.errors [data-state-of]').length === 2);
+    await dashboard.untilSameInstant();
+    await dashboard.screenshot('firefox_compared');
+  });
+
+  step('scores a file of its own', async () => {
+    const answer = await callServer(server, `/runs/${kRun}/trajectories/truth`);
+    assert.equal(answer.status, 200);
+    const file = path.join(runs.folder, '../mine.tum');
+    writeFileSync(file, await answer.text());
+    await page.locator('[data-role=open-scores]').click();
+    const input = await page.waitForSelector('[data-role=score-file]');
+    await input.uploadFile(file);
+    await dashboard.until(() => document.querySelector('.overlay[data-panel=scoring]').textContent.includes('mine.tum'));
+    await page.locator('.overlay[data-panel=scoring] [aria-label=Close]').click();
+  });
+
+  step('flies a sweep', async () => {
+    await page.locator('[data-role=open-sweeps]').click();
+    await page.locator('[data-role=new-sweep]').click();
+    await dashboard.until(() => document.querySelector('[data-role=sweep-cost]').textContent.includes('cell'));
+    await page.locator('[data-role=sweep-name]').fill('fox');
+    await page.locator('[data-role=sweep-text]').fill(JSON.stringify(kSweep));
+    await dashboard.until(() => document.querySelector('[data-role=sweep-cost]').textContent.startsWith('2 cells'));
+    await page.locator('[data-role=start-sweep]').click();
+    await dashboard.until(
+      () => document.querySelector('[data-role=sweep-state]')?.textContent === 'complete',
+      undefined,
+      120_000,
+    );
+    assert.equal(await page.$$eval('.sweep-matrix .sweep-cell', (cells) => cells.length), 2);
+    await dashboard.screenshot('firefox_sweep');
+    await page.locator('.overlay[data-panel=sweeps] [aria-label=Close]').click();
   });
 
   step('shows JPEGs where the browser has no WebCodecs', async () => {

@@ -155,7 +155,7 @@ def survive_failures(sweep: Sweep, slurm: cluster.Cluster) -> None:
     for pid in sweep.workers():
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
-    slurm.wait_for("the loss of the node", lambda: "down" in slurm.node_state())
+    slurm.wait_for("the loss of the node", lambda: "down" in slurm.node_state(), 150)
     slurm.start_node()
     after_next_flight(f"Slurm's controller is away for {CONTROLLER_AWAY_S} s, and this one is killed "
                       "and started again meanwhile")
