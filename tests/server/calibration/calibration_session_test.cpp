@@ -197,6 +197,10 @@ TEST(CalibrationSession, LetsACameraGoThatNobodyLooksAt) {
   SessionRequest request = request_for(listed({board_images(1).front()}, live));
   request.patience = 300ms;
   const auto session = CalibrationSession::begin(std::move(request)).value();
+  wait_for(*session, [&](const SessionState& now) {
+    session->touch();  // somebody looks until there is a view
+    return !now.views.empty();
+  });
   const SessionState state =
       wait_for(*session, [](const SessionState& now) { return !now.source_open; });
   EXPECT_EQ(state.phase, SessionPhase::kWaiting);
