@@ -132,10 +132,17 @@ describe('the 3D plot', { skip, timeout: 600_000 }, () => {
   });
 
   step('is not drawn while nothing changes', async () => {
-    const before = await draws();
-    await page.evaluate(async () => {
-      for (let i = 0; i < 20; i++) await new Promise(requestAnimationFrame);
-    });
+    const frames = () =>
+      page.evaluate(async () => {
+        for (let i = 0; i < 20; i++) await new Promise(requestAnimationFrame);
+      });
+    // Rows and scores may still arrive for a while.
+    let before = null;
+    for (let tries = 0; tries < 100 && before !== (await draws()); tries += 1) {
+      before = await draws();
+      await frames();
+    }
+    await frames();
     assert.equal(await draws(), before);
   });
 

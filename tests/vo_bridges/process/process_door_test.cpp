@@ -191,11 +191,16 @@ TEST(ProcessDoor, WaitsForAnEstimatorThatSomebodyElseStarts) {
   pid_t pid = 0;
   std::thread somebody([&] {
     while (!std::filesystem::exists(path)) std::this_thread::yield();
+    // The file is there a moment before the door listens.
+    std::string shell = "/bin/sh";
+    std::string option = "-c";
+    std::string script = "for i in 1 2 3 4 5; do \"$0\" && exit 0; sleep 0.2; done; exit 1";
     std::string program = OVERFLY_SCRIPTED_ESTIMATOR;
     std::string variable = "OVERFLY_VO_ADDRESS=unix:" + path;
-    std::array<char*, 2> argv = {program.data(), nullptr};
+    std::array<char*, 5> argv = {
+        shell.data(), option.data(), script.data(), program.data(), nullptr};
     std::array<char*, 2> envp = {variable.data(), nullptr};
-    ASSERT_EQ(::posix_spawn(&pid, program.c_str(), nullptr, nullptr, argv.data(), envp.data()), 0);
+    ASSERT_EQ(::posix_spawn(&pid, shell.c_str(), nullptr, nullptr, argv.data(), envp.data()), 0);
   });
   {
     const auto estimator = started(options);
