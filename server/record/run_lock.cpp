@@ -2,10 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 namespace overfly::server {
@@ -16,19 +19,31 @@ namespace fs = std::filesystem;
 /// Locked by flock(2).
 fs::path lock_file(const fs::path& folder) { return folder / ".running"; }
 
+/// Whether the file is still in its folder: its holder removes it before it lets go.
+bool is_linked(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
 }  // namespace
 
 Result<RunLock> RunLock::take(const fs::path& folder) {
+  // held() has the lock for a moment: who asks must not be taken for who works.
+  constexpr int kAttempts = 20;
+  constexpr auto kPause = std::chrono::milliseconds(5);
   const fs::path file = lock_file(folder);
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor < 0) {
-    return Error{ErrorCode::kIo, file.string() + ": cannot create: " + std::strerror(errno)};
-  }
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(kPause);
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (descriptor < 0) {
+      return Error{ErrorCode::kIo, file.string() + ": cannot create: " + std::strerror(errno)};
+    }
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_linked(descriptor)) {
+      return RunLock(descriptor, file);
+    }
     ::close(descriptor);
-    return Error{ErrorCode::kConflict, folder.string() + ": is in use by another process"};
   }
-  return RunLock(descriptor, file);
+  return Error{ErrorCode::kConflict, folder.string() + ": is in use by another process"};
 }
 
 bool RunLock::held(const fs::path& folder) {

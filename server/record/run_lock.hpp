@@ -10,7 +10,7 @@ namespace overfly::server {
 /// releases the lock when the process is killed.
 class RunLock {
  public:
-  /// Errors: kConflict if another process holds it; kIo.
+  /// Waits 0.1 s for it at most. Errors: kConflict if another process holds it; kIo.
   static Result<RunLock> take(const std::filesystem::path& folder);
   /// True while a process (including this one) holds the lock.
   [[nodiscard]] static bool held(const std::filesystem::path& folder);

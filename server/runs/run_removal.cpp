@@ -1,13 +1,11 @@
 #include "server/runs/run_removal.hpp"
 
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -33,19 +31,6 @@ Result<fs::path> put_aside(const fs::path& folder) {
   return Error{ErrorCode::kIo, folder.string() + ": cannot delete: " + std::strerror(errno)};
 }
 
-/// Whoever asks whether a run is worked on holds its lock for a moment: several who delete a run
-/// must not all give up for each other.
-Result<RunLock> take_lock(const fs::path& folder) {
-  constexpr int kAttempts = 20;
-  Result<RunLock> taken = RunLock::take(folder);
-  for (int attempt = 1; attempt < kAttempts; ++attempt) {
-    if (taken || taken.error().code != ErrorCode::kConflict) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    taken = RunLock::take(folder);
-  }
-  return taken;
-}
-
 }  // namespace
 
 Status remove_run_folder(const fs::path& folder) {
@@ -53,7 +38,7 @@ Status remove_run_folder(const fs::path& folder) {
   std::optional<RunLock> lock;
   // Of a symbolic link only the link is deleted: nothing is written to its target.
   if (!fs::is_symlink(folder, failure)) {
-    Result<RunLock> taken = take_lock(folder);
+    Result<RunLock> taken = RunLock::take(folder);
     if (!taken && FileStamp::of(folder).exists) return taken.error();
     if (taken) lock = std::move(*taken);
   }

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+constexpr std::size_t kMostShown = 100;  ///< characters of a wrong name
 constexpr std::size_t kMaxEnvelopeBytes = std::size_t{4} << 20U;
 
 Error invalid(const std::string& text) { return {ErrorCode::kInvalidArgument, text}; }
@@ -93,12 +94,13 @@ Result<const SweepAxis*> axis_along(const Sweep& sweep, const std::string& name)
     if (axis->name == name) return axis;
     names += (names.empty() ? "" : ", ") + axis->name;
   }
+  const std::string wanted = name.substr(0, kMostShown);
   if (names.empty()) {
-    return invalid("border.axis = " + name +
+    return invalid("border.axis = " + wanted +
                    ": the sweep has no axis with at least two values, in a grid without a Latin "
                    "hypercube");
   }
-  return invalid("border.axis = " + name +
+  return invalid("border.axis = " + wanted +
                  ": must be an axis of the sweep with at least two values (" + names + ")");
 }
 
@@ -154,7 +156,8 @@ Status check_border(const Sweep& sweep,
   if (!along) return along.error();
   if (border.estimator.empty() && !estimators.empty()) border.estimator = estimators.front();
   if (std::find(estimators.begin(), estimators.end(), border.estimator) == estimators.end()) {
-    return invalid("border.estimator = " + border.estimator + ": must be one of the sweep");
+    return invalid("border.estimator = " + border.estimator.substr(0, kMostShown) +
+                   ": must be one of the sweep");
   }
   const Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();

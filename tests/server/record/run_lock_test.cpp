@@ -1,0 +1,71 @@
+#include "server/record/run_lock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "tests/support/support.hpp"
+
+namespace overfly::server {
+namespace {
+
+TEST(RunLock, OneAtATime) {
+  const overfly::testing::TemporaryFolder folder;
+  EXPECT_FALSE(RunLock::held(folder.path()));
+  {
+    const auto lock = RunLock::take(folder.path());
+    ASSERT_TRUE(lock.ok());
+    EXPECT_TRUE(RunLock::held(folder.path()));
+    EXPECT_EQ(RunLock::take(folder.path()).error().code, ErrorCode::kConflict);
+  }
+  EXPECT_FALSE(RunLock::held(folder.path()));
+  EXPECT_TRUE(RunLock::take(folder.path()).ok());
+}
+
+/// Those who only ask must not keep others from working.
+TEST(RunLock, IsTakenWhileOthersAskForIt) {
+  const overfly::testing::TemporaryFolder folder;
+  std::atomic<bool> over = false;
+  std::vector<std::thread> askers;
+  for (int i = 0; i < 3; ++i) {
+    askers.emplace_back([&] {
+      while (!over) {
+        (void)RunLock::held(folder.path());
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+      }
+    });
+  }
+  for (int i = 0; i < 200; ++i) EXPECT_TRUE(RunLock::take(folder.path()).ok()) << i;
+  over = true;
+  for (std::thread& asker : askers) asker.join();
+}
+
+/// The holder removes the file when it lets go: who waited for it must not hold the removed file.
+TEST(RunLock, NeverHasTwoHolders) {
+  const overfly::testing::TemporaryFolder folder;
+  std::atomic<int> holders = 0;
+  std::atomic<int> taken = 0;
+  std::atomic<bool> doubled = false;
+  std::vector<std::thread> workers;
+  for (int i = 0; i < 4; ++i) {
+    workers.emplace_back([&] {
+      for (int round = 0; round < 100; ++round) {
+        const auto lock = RunLock::take(folder.path());
+        if (!lock) continue;
+        if (++holders > 1) doubled = true;
+        ++taken;
+        std::this_thread::sleep_for(std::chrono::microseconds(300));
+        --holders;
+      }
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+  EXPECT_FALSE(doubled);
+  EXPECT_GT(taken, 100);
+}
+
+}  // namespace
+}  // namespace overfly::server
