@@ -50,14 +50,14 @@ TEST(RunLock, NeverHasTwoHolders) {
   std::atomic<int> taken = 0;
   std::atomic<bool> doubled = false;
   std::vector<std::thread> workers;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 16; ++i) {
     workers.emplace_back([&] {
-      for (int round = 0; round < 100; ++round) {
+      for (int round = 0; round < 300; ++round) {
         const auto lock = RunLock::take(folder.path());
         if (!lock) continue;
         if (++holders > 1) doubled = true;
         ++taken;
-        std::this_thread::sleep_for(std::chrono::microseconds(300));
+        for (int i = 0; i < 3; ++i) std::this_thread::yield();
         --holders;
       }
     });
