@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/motion/pose.hpp"
 
@@ -40,8 +41,8 @@ struct RelativeErrorAt {
 /// longer than kErrorWindow_m (Geiger, Lenz, Urtasun 2012, sec. 3, of the pair that ends here).
 /// Empty where no earlier pose of the same map is far enough away.
 /// @param poses  as for scale_error_at
-/// @pre poses[at] is not empty
-[[nodiscard]] std::optional<RelativeErrorAt> relative_error_at(
-    std::span<const std::optional<PosePair>> poses, std::size_t at);
+/// @return one entry for each pose
+[[nodiscard]] std::vector<std::optional<RelativeErrorAt>> relative_errors_along(
+    std::span<const std::optional<PosePair>> poses);
 
 }  // namespace overfly::evaluation

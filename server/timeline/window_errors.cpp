@@ -69,10 +69,10 @@ std::vector<WindowErrors> window_errors_of(const RunTimeline& timeline,
       frames_between(timeline, camera, all.front().sample.frame, all.back().sample.frame);
   const std::vector<std::optional<PosePair>> poses =
       poses_of(all, frames, alignment, timeline.cameras().at(camera).T_body_camera);
+  const auto relative = evaluation::relative_errors_along(poses);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!poses[earlier + i]) continue;
-    errors[i] = {evaluation::scale_error_at(poses, earlier + i),
-                 evaluation::relative_error_at(poses, earlier + i)};
+    errors[i] = {evaluation::scale_error_at(poses, earlier + i), relative[earlier + i]};
   }
   return errors;
 }

@@ -13,8 +13,8 @@ namespace overfly::server {
 
 /// Empty where no earlier row of the same map is far enough away.
 struct WindowErrors {
-  std::optional<double> scale;  ///< evaluation::scale_error_at
-  std::optional<evaluation::RelativeErrorAt> relative;
+  std::optional<double> scale;                          ///< evaluation::scale_error_at
+  std::optional<evaluation::RelativeErrorAt> relative;  ///< evaluation::relative_errors_along
 };
 
 /// Of the camera's poses at their frames.

@@ -102,17 +102,20 @@ Json error_tables(const FileScore& score,
     if (const auto error = evaluation::scale_error_at(pairs, i)) {
       add_if_finite(scale, {t_ns, {100.0 * *error, 0.0, 0.0}});
     }
-    if (const auto error = evaluation::relative_error_at(pairs, i)) {
-      const double rotation_rad = evaluation::kErrorWindow_m * error->rotation_rad_m;
-      add_if_finite(relative,
-                    {t_ns, {100.0 * error->translation, deg_from_rad(rotation_rad), 0.0}});
-    }
     add_if_finite(by_axis, {t_ns, {axes[i].along_m, axes[i].across_m, axes[i].up_m}});
     add_if_finite(sizes,
                   {t_ns,
                    {alignment.position_errors_m[i],
                     rotations ? alignment.rotation_errors_deg[i] : 0.0,
                     0.0}});
+  }
+  const auto along = evaluation::relative_errors_along(pairs);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    if (!along[i]) continue;
+    const double rotation_rad = evaluation::kErrorWindow_m * along[i]->rotation_rad_m;
+    add_if_finite(
+        relative,
+        {score.matches[i].t_ns, {100.0 * along[i]->translation, deg_from_rad(rotation_rad), 0.0}});
   }
   Json tables = poses.json();
   tables["axis_errors"] = columns_of_series(by_axis, {"along_m", "across_m", "up_m"});

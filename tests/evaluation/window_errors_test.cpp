@@ -52,12 +52,13 @@ class WindowErrorsOfAFlight : public ::testing::Test {
 TEST_F(WindowErrorsOfAFlight, AverageToTheRelativeErrorOfTheScore) {
   const auto scored = relative_errors(matches, estimates, {kErrorWindow_m});
   ASSERT_EQ(scored.size(), 1U);
+  const auto errors = relative_errors_along(pairs);
   std::size_t end = 0;
-  while (!relative_error_at(pairs, end)) ++end;
+  while (!errors[end]) ++end;
   std::vector<double> translation;
   std::vector<double> rotation_rad_m;
   for (; end < pairs.size(); end += 10) {
-    const auto error = relative_error_at(pairs, end);
+    const auto& error = errors[end];
     ASSERT_TRUE(error);
     translation.push_back(error->translation);
     rotation_rad_m.push_back(error->rotation_rad_m);
@@ -74,20 +75,33 @@ TEST_F(WindowErrorsOfAFlight, AverageToTheRelativeErrorOfTheScore) {
 
 TEST_F(WindowErrorsOfAFlight, FollowThePathAndNotTheChord) {
   // The path is longer than its chord: the relative error is there first.
+  const auto errors = relative_errors_along(pairs);
   std::size_t first = 0;
-  while (!relative_error_at(pairs, first)) ++first;
+  while (!errors[first]) ++first;
   EXPECT_FALSE(scale_error_at(pairs, first));
   EXPECT_TRUE(scale_error_at(pairs, first + 1));
 }
 
 TEST_F(WindowErrorsOfAFlight, LeaveOutInstantsWithoutAnEstimate) {
-  const auto whole = relative_error_at(pairs, 400);
+  const auto whole = relative_errors_along(pairs)[400];
   for (std::size_t k = 380; k < 400; ++k) pairs[k].reset();
-  const auto with_gap = relative_error_at(pairs, 400);
+  const auto with_gap = relative_errors_along(pairs)[400];
   ASSERT_TRUE(whole && with_gap);
   EXPECT_NEAR(with_gap->translation, whole->translation, 0.2 * whole->translation);
   pairs[379]->map_id = 1;
-  EXPECT_FALSE(relative_error_at(pairs, 400)) << "another map";
+  EXPECT_FALSE(relative_errors_along(pairs)[400]) << "another map";
+}
+
+/// The window is searched among the same number of poses, whatever is before it.
+TEST_F(WindowErrorsOfAFlight, OfAVehicleThatIsSlowAreEmpty) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k]->T_world_camera.translation = Eigen::Vector3d(0.05 * static_cast<double>(k), 0.0, 0.0);
+  }
+  while (pairs.size() < 4000) {
+    pairs.push_back(pairs.back());
+    pairs.back()->T_world_camera.translation.x() += 0.05;
+  }
+  for (const auto& error : relative_errors_along(pairs)) EXPECT_FALSE(error);
 }
 
 }  // namespace
