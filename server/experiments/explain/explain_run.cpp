@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/text/number_text.hpp"
+#include "server/experiments/explain/data_limit.hpp"
 #include "server/experiments/flight_files.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
@@ -27,9 +28,6 @@ using Causes = std::vector<Cause>;
 constexpr std::size_t kReservedFlights = 4;
 constexpr std::size_t kMostConfirmed = 2;
 constexpr int kMostMarginFlights = 3;
-/// Ground without imagery that may make an estimator fail, as a share of the image.
-constexpr double kMuchVoid = 0.3;
-
 std::vector<CauseChange> without_all(const Causes& causes, const Causes& but = {}) {
   std::vector<CauseChange> changes;
   for (const Cause cause : causes) {
@@ -77,7 +75,10 @@ class Explainer {
       if (Status status = (this->*step)(); !status) return status.error();
       if (!result_.reproduced) break;
     }
-    judge_data();
+    if (control_ != nullptr) {
+      result_.data_reason = data_limit(*control_, result_.necessary, result_.sufficient);
+      result_.data_limited = !result_.data_reason.empty();
+    }
     result_.flights.assign(flights_.flights().begin(), flights_.flights().end());
     return std::move(result_);
   }
@@ -282,34 +283,6 @@ class Explainer {
     }
     result_.margin = margin;
     return {};
-  }
-
-  void judge_data() {
-    if (control_ == nullptr) return;
-    char text[160];
-    if (holds(result_.necessary, Cause::kTexture)) {
-      std::snprintf(text,
-                    sizeof text,
-                    "The imagery has %.2f texels per pixel; with synthetic detail the estimator "
-                    "survives.",
-                    control_->texels_per_pixel_median);
-    } else if (!result_.necessary.empty() || !result_.sufficient.empty()) {
-      return;
-    } else if (control_->texture_limited) {
-      std::snprintf(text,
-                    sizeof text,
-                    "The imagery has %.2f texels per pixel, less than 0.5.",
-                    control_->texels_per_pixel_median);
-    } else if (control_->void_fraction_max > kMuchVoid) {
-      std::snprintf(text,
-                    sizeof text,
-                    "Up to %.0f %% of an image shows no imagery.",
-                    100.0 * control_->void_fraction_max);
-    } else {
-      return;
-    }
-    result_.data_limited = true;
-    result_.data_reason = text;
   }
 
   const FailedRun& run_;
