@@ -1,14 +1,34 @@
 #include "renderer/camera/image_motion.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 
 namespace overfly::renderer {
 
 namespace {
 
-constexpr double kInstantsPerPx = 2.0;
-constexpr double kStillPx = 0.05;
+constexpr double kInstantPx = 0.25;  // a shorter streak is rendered as an instant
+constexpr double kRowsPx = 0.05;
+
+/// Gauss-Legendre quadrature (Abramowitz and Stegun 1964, eq. 25.4.29).
+std::vector<ExposureInstant> quadrature(int instants, std::int64_t exposure_ns) {
+  std::vector<ExposureInstant> all;
+  const auto add = [&](double root, double weight) {
+    all.push_back({std::llround(0.5 * root * static_cast<double>(exposure_ns)),
+                   static_cast<float>(0.5 * weight)});
+  };
+  for (const double root : boost::math::legendre_p_zeros<double>(instants)) {
+    const double slope = boost::math::legendre_p_prime(instants, root);
+    const double weight = 2.0 / ((1.0 - root * root) * slope * slope);
+    if (root > 0.0) add(-root, weight);
+    add(root, weight);
+  }
+  std::sort(all.begin(), all.end(), [](const ExposureInstant& a, const ExposureInstant& b) {
+    return a.offset_ns < b.offset_ns;
+  });
+  return all;
+}
 
 }  // namespace
 
@@ -38,8 +58,9 @@ double largest_motion_px(const CameraModel& camera,
   return largest_px;
 }
 
-int exposure_instants(const CameraRequest& request, const HeightQuery& ground) {
-  if (request.exposure_ns == 0 || request.T_world_camera.still()) return 1;
+std::vector<ExposureInstant> exposure_instants(const CameraRequest& request,
+                                               const HeightQuery& ground) {
+  if (request.exposure_ns == 0 || request.T_world_camera.still()) return {{}};
   const auto pose = [&](std::int64_t t_ns) { return request.T_world_camera.at(t_ns); };
   // Sums the motion in both directions, because a vibration may return within the exposure.
   constexpr int kPieces = 8;
@@ -53,10 +74,10 @@ int exposure_instants(const CameraRequest& request, const HeightQuery& ground) {
                                    ground);
   }
   streak_px *= static_cast<double>(request.exposure_ns) / static_cast<double>(all_ns);
-  if (streak_px < kStillPx) return 1;
+  if (streak_px < kInstantPx) return {{}};
   // Limited before the conversion: a point next to the image plane moves by any number of pixels.
-  const double instants = std::min(std::ceil(kInstantsPerPx * streak_px) + 1.0, 1.0 * kMaxInstants);
-  return std::max(static_cast<int>(instants), 2);
+  const double instants = std::min(std::ceil(streak_px) + 1.0, 1.0 * kMaxInstants);
+  return quadrature(static_cast<int>(instants), request.exposure_ns);
 }
 
 int rows_of_one_pose(const CameraRequest& request, const HeightQuery& ground) {
@@ -75,8 +96,8 @@ int rows_of_one_pose(const CameraRequest& request, const HeightQuery& ground) {
                                             ground));
   }
   const double px_per_row = fastest_px * kPieces / (rows - 1.0);
-  if (px_per_row * 0.5 * rows <= kStillPx) return rows;
-  return std::clamp(static_cast<int>(2.0 * kStillPx / px_per_row), 1, rows);
+  if (px_per_row * 0.5 * rows <= kRowsPx) return rows;
+  return std::clamp(static_cast<int>(2.0 * kRowsPx / px_per_row), 1, rows);
 }
 
 }  // namespace overfly::renderer

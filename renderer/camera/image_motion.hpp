@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/earth/height_query.hpp"
 #include "renderer/renderer.hpp"
@@ -16,10 +17,20 @@ namespace overfly::renderer {
                                        const Pose& T_world_camera_after,
                                        const HeightQuery& ground);
 
-/// Number of instants that sample the exposure: two per pixel of the longest streak, in [1,
-/// kMaxInstants]; 1 for streaks below 0.05 px.
+/// An instant that samples the exposure.
+struct ExposureInstant {
+  std::int64_t offset_ns = 0;  ///< from the middle of the exposure
+  float weight = 1.0F;         ///< of its light in the mean; those of an exposure add up to 1
+};
+
+/// The most instants of an exposure.
 inline constexpr int kMaxInstants = 128;
-[[nodiscard]] int exposure_instants(const CameraRequest& request, const HeightQuery& ground);
+/// Instants and weights of Gauss-Legendre quadrature over the exposure: one per pixel of the
+/// longest streak and one more, at most kMaxInstants; a single one for streaks below 0.25 px. Light
+/// with a period of 8, 4 and 2 px on the image has errors of at most 0.2, 0.7 and 2.7 % of its
+/// amplitude.
+[[nodiscard]] std::vector<ExposureInstant> exposure_instants(const CameraRequest& request,
+                                                             const HeightQuery& ground);
 
 /// Number of rows of a rolling shutter that may share a pose: within them the image moves by at
 /// most 0.05 px relative to the middle row. All rows for a global shutter.

@@ -151,23 +151,20 @@ const TapRays& CameraPass::rays_of(const CameraModel& camera, RenderQuality qual
 Status CameraPass::draw_composed(const CameraRequest& request, CameraFrame& frame) {
   const terrain::TileSource& tiles = patches_.tiles();
   const PinholeCamera& size = request.camera.pinhole();
-  const int instants = exposure_instants(request, tiles);
+  const std::vector<ExposureInstant> instants = exposure_instants(request, tiles);
   const TapRays& rays = rays_of(request.camera, request.quality);
   ImageBuffer<float> image(size.width_px, size.height_px, channel_count(request.format));
   GroundLook look = look_of(request);
   for (const ImagePart& part : divide_image(request, rows_of_one_pose(request, tiles))) {
     look.lod_bias = part.lod_bias;
-    for (int i = 0; i < instants; ++i) {
-      // The midpoints of equal intervals of the exposure.
-      const double share = (i + 0.5) / instants - 0.5;
-      const std::int64_t t_ns =
-          part.t_ns + std::llround(share * static_cast<double>(request.exposure_ns));
-      const GroundMesh mesh = build_ground_mesh(patches_, view_of(request, part, t_ns), {});
+    for (const ExposureInstant& instant : instants) {
+      const View view = view_of(request, part, part.t_ns + instant.offset_ns);
+      const GroundMesh mesh = build_ground_mesh(patches_, view, {});
       const Result<RenderTarget*> target =
           draw_picture(request, mesh, part.source, look, float_target(request.format));
       if (!target.ok()) return target.error();
       (*target)->read(picture_);
-      add_part(part, picture_, rays, 1.0F / static_cast<float>(instants), image);
+      add_part(part, picture_, rays, instant.weight, image);
     }
   }
   const View view =

@@ -136,31 +136,29 @@ Status FrameCaster::draw_instants(Frame& frame, CameraFrame& drawn) {
   const CameraRequest& request = frame.request;
   const PinholeCamera& size = request.camera.pinhole();
   const int channels = channel_count(request.format);
-  const int instants = exposure_instants(request, *tiles_);
+  const std::vector<ExposureInstant> instants = exposure_instants(request, *tiles_);
   Canvas canvas;
   canvas.width_px = size.width_px;
   canvas.channels = channels;
-  canvas.weight = 1.0F / static_cast<float>(instants);
   RadianceImage sums;
-  if (is_linear(request.format) || instants > 1) {
+  if (is_linear(request.format) || instants.size() > 1) {
     sums = RadianceImage(size.width_px, size.height_px, channels);
     canvas.sums = sums.data.data();
   }
   if (!is_linear(request.format)) {
     drawn.image = Image(size.width_px, size.height_px, channels);
-    if (instants == 1) canvas.bytes = drawn.image.data.data();
+    if (instants.size() == 1) canvas.bytes = drawn.image.data.data();
   }
   const Painter painter(request, kernel_);
-  for (int i = 0; i < instants; ++i) {
-    const auto offset_ns = static_cast<std::int64_t>(
-        std::llround(static_cast<double>(request.exposure_ns) * ((i + 0.5) / instants - 0.5)));
-    cast(frame, ShutterPoses(request, offset_ns), false);
+  for (const ExposureInstant& instant : instants) {
+    canvas.weight = instant.weight;
+    cast(frame, ShutterPoses(request, instant.offset_ns), false);
     if (Status status = find_tiles(frame); !status) return status;
     paint(painter, canvas);
   }
   if (is_linear(request.format)) {
     drawn.radiance = std::move(sums);
-  } else if (instants > 1) {
+  } else if (instants.size() > 1) {
     std::transform(sums.data.begin(), sums.data.end(), drawn.image.data.begin(), [](float value) {
       return static_cast<std::uint8_t>(rounded(value));
     });

@@ -35,6 +35,9 @@ Json use_json(const EstimatorStatus& status) {
 Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
   EstimatorState& state = estimators_[estimator];
   if (Status status = state.lines.append(json_from(event.record)); !status) return status;
+  const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
+  const FrameRow* frame = frame_row(camera, event.record.sample.frame);
+  tally(event.record, frame != nullptr ? frame->image_crc32 : std::nullopt, state.status);
   if (!event.record.dropped) {
     if (Status status = add_answer(estimator, event); !status) return status;
   }
@@ -45,9 +48,6 @@ Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
 
 void RunRecorder::tell_status(std::size_t estimator, const EstimatorEvent& event) {
   EstimatorState& state = estimators_[estimator];
-  const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
-  const FrameRow* frame = frame_row(camera, event.record.sample.frame);
-  tally(event.record, frame != nullptr ? frame->image_crc32 : std::nullopt, state.status);
   if (event.use) {
     state.status.use = event.use;
     state.status.latency = state.latency_so_far.summary();
@@ -86,14 +86,15 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   EstimateRow row;
   row.sample = event.record.sample;
   row.latency_ms = event.latency_ms;
+  row.dropped_frames = state.status.dropped;
+  row.unanswered_frames = state.status.unanswered;
   const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
   if (const FrameRow* frame = frame_row(camera, row.sample.frame)) {
     row.T_world_body = state.alignment.add(row.sample, frame->T_world_camera, frame->axis_depth_m);
     if (const auto& S_world_vo = state.alignment.S_world_vo()) row.scale = S_world_vo->scale;
   }
   // An estimator that has ended returns an empty answer at once.
-  const bool gone = !event.record.crash.empty() || !state.status.crash.empty();
-  if (!gone) {
+  if (state.status.crash.empty()) {
     state.frames.push_back(row.sample.frame);
     state.latency.ms.push_back(event.latency_ms);
     state.latency_so_far.add(event.latency_ms);

@@ -58,12 +58,16 @@ void append_estimates(const RunRecords& records,
   const EstimatorRecords& estimator = records.estimators[index];
   const CameraRecords& camera = records.camera_of(estimator);
   LiveAlignment alignment(camera.T_body_camera);
+  EstimatorStatus so_far;
   for (const EstimateRecord& record : estimator.records) {
+    tally(record, std::nullopt, so_far);
     const FrameRow* frame = frame_row(camera, record.sample.frame);
     // A kill can leave the frames' file shorter than this one.
     if (record.dropped || frame == nullptr) continue;
     EstimateRow row;
     row.sample = record.sample;
+    row.dropped_frames = so_far.dropped;
+    row.unanswered_frames = so_far.unanswered;
     row.T_world_body = alignment.add(record.sample, frame->T_world_camera, frame->axis_depth_m);
     if (const auto& S_world_vo = alignment.S_world_vo()) row.scale = S_world_vo->scale;
     const auto latency = timings.latency_ms.find(record.sample.frame);

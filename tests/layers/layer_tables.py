@@ -292,7 +292,7 @@ THIRD_PARTY = [
     (r"opencv2/(?!\w+/\w+_c\.h$)", ["odometry", "evaluation/images", "calibration/detection"], False),
     (r"ceres/", ["odometry", "flight/smoothing"], False),
     (r"boost/(?!math/)", ["server/net"], False),
-    (r"boost/math/", ["evaluation/statistics"], False),
+    (r"boost/math/", ["evaluation/statistics", "renderer/camera"], False),
     (r"nlopt", ["server/experiments/hunt"], False),
     (r"openssl/", ["server/net"], False),
     (r"(turbojpeg|jpeglib)\.h$", ["server/files"], False),

@@ -61,16 +61,16 @@ json column(const Rows& rows, ValueOf value_of) {
 }
 
 /// Adds a column unless all of its values are null: most runs have no sensor and no faults.
-template <typename ValueOf>
-void add_if_said(const std::vector<server::FrameRow>& rows,
-                 const char* name,
-                 ValueOf value_of,
-                 json* columns) {
+template <typename Rows, typename ValueOf>
+void add_if_said(const Rows& rows, const char* name, ValueOf value_of, json* columns) {
   json values = column(rows, value_of);
   const bool said =
       std::any_of(values.begin(), values.end(), [](const json& value) { return !value.is_null(); });
   if (said) (*columns)[name] = std::move(values);
 }
+
+/// Null for 0: most runs miss no frame.
+json count_or_null(std::int64_t count) { return count > 0 ? json(count) : json(nullptr); }
 
 /// Effects of sensor, tiles and faults on each frame.
 void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns) {
@@ -167,7 +167,7 @@ json pose_json(const Pose& T_world_body) {
   return pose;
 }
 
-json truth_columns(const std::vector<server::FrameRow>& rows) {
+json truth_columns(const std::vector<server::FrameRow>& rows, std::size_t first) {
   using Row = server::FrameRow;
   constexpr double kDigits = 1e4;
   json columns = json::object();
@@ -178,6 +178,13 @@ json truth_columns(const std::vector<server::FrameRow>& rows) {
   columns["void_fraction"] =
       column(rows, [](const Row& row) { return rounded(row.void_fraction, kDigits); });
   add_image_columns(rows, &columns);
+  // Frames are numbered from 0, and a late one has a number but no row.
+  auto index = static_cast<std::int64_t>(first);
+  add_if_said(
+      rows,
+      "late_frames",
+      [&](const Row& row) { return count_or_null(row.frame - index++); },
+      &columns);
   add_pose_columns(
       rows, [](const Row& row) { return std::optional<Pose>(row.T_world_body); }, &columns);
   return columns;
@@ -193,6 +200,16 @@ json estimate_columns(const server::RunTimeline& timeline,
   columns["t_ns"] = column(rows, [](const Row& row) { return row.sample.t_ns; });
   columns["state"] = column(rows, [](const Row& row) { return to_string(row.sample.state); });
   columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
+  add_if_said(
+      rows,
+      "dropped_frames",
+      [](const Row& row) { return count_or_null(row.dropped_frames); },
+      &columns);
+  add_if_said(
+      rows,
+      "unanswered_frames",
+      [](const Row& row) { return count_or_null(row.unanswered_frames); },
+      &columns);
   add_pose_columns(
       rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
   const auto errors = server::errors_of(timeline, estimator, rows, alignment);

@@ -34,6 +34,7 @@ constexpr Series kImage[] = {
     {"gain", "gain", "", "gain"},
     {"saturated_fraction", "saturated", "%", "saturated", 100.0},
     {"late_tiles", "late tiles", "", "late_tiles"},
+    {"late_frames", "late frames", "frames", "late_frames"},
     {"stamp_offset_ns", "stamp offset", "ms", "stamp_offset", 1e-6}};
 
 constexpr Series kEstimate[] = {
@@ -45,7 +46,9 @@ constexpr Series kEstimate[] = {
     {"error_scale_percent", "scale error over 100 m", "%", "scale_error"},
     {"error_relative_percent", "relative error over 100 m", "%", "relative_error"},
     {"error_relative_deg", "relative rotation over 100 m", "deg", "relative_rotation_error"},
-    {"latency_ms", "latency", "ms", "latency"}};
+    {"latency_ms", "latency", "ms", "latency"},
+    {"dropped_frames", "dropped frames", "frames", "dropped_frames"},
+    {"unanswered_frames", "unanswered frames", "frames", "unanswered_frames"}};
 
 constexpr Series kHonesty[] = {{"nees_position", "NEES of the position", "", "nees"},
                                {"nees_low", "95 % band, low", "", "nees"},

@@ -46,7 +46,9 @@ struct EstimateRow {
   double latency_ms = 0.0;
   /// In the order of RunTimeline::counter_names; NaN or absent where the answer has none.
   std::vector<double> counters = {};
-  double scale = 0.0;  ///< of the alignment of T_world_body; 0 = not aligned
+  double scale = 0.0;                  ///< of the alignment of T_world_body; 0 = not aligned
+  std::int64_t dropped_frames = 0;     ///< of the frames before this one: dropped while it was busy
+  std::int64_t unanswered_frames = 0;  ///< until this frame, included: not answered in time
 };
 
 struct LogRow {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace overfly::renderer {
 namespace {
@@ -65,22 +66,44 @@ TEST(ImageMotion, IsThatOfThePixelsThatMoveMost) {
   EXPECT_GE(found_px, 0.98 * dense_px);
 }
 
-TEST(ExposureInstants, AreTwoPerPixelOfTheStreak) {
-  const auto instants = [](double way_m) {
-    return exposure_instants(exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}),
-                                             pose_over_flat({}, {way_m, 0.0, 110.0})),
-                             kFlat);
-  };
-  // 2 px per metre.
-  EXPECT_EQ(instants(0.02), 1);
-  EXPECT_EQ(instants(0.03), 2);
-  EXPECT_EQ(instants(2.4), 11);   // 4.8 px
-  EXPECT_EQ(instants(10.2), 42);  // 20.4 px
-  EXPECT_EQ(instants(100.0), kMaxInstants);
+/// Of an exposure during which the image moves by 2 px per metre.
+std::vector<ExposureInstant> instants_of(double way_m) {
+  return exposure_instants(exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}),
+                                           pose_over_flat({}, {way_m, 0.0, 110.0})),
+                           kFlat);
+}
+
+TEST(ExposureInstants, AreOnePerPixelOfTheStreakAndOneMore) {
+  EXPECT_EQ(instants_of(0.12).size(), 1U);
+  EXPECT_EQ(instants_of(0.13).size(), 2U);
+  EXPECT_EQ(instants_of(2.4).size(), 6U);    // 4.8 px
+  EXPECT_EQ(instants_of(10.2).size(), 22U);  // 20.4 px
+  EXPECT_EQ(instants_of(100.0).size(), std::size_t{kMaxInstants});
   CameraRequest still =
       exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}), pose_over_flat({}, {9.0, 0.0, 110.0}));
   still.exposure_ns = 0;
-  EXPECT_EQ(exposure_instants(still, kFlat), 1);
+  EXPECT_EQ(exposure_instants(still, kFlat).size(), 1U);
+}
+
+/// Light that varies over the image as a cosine, of which the mean over a streak is a sinc.
+TEST(ExposureInstants, GiveTheMeanOfLightThatVaries) {
+  struct Limit {
+    double period_px, error;
+  };
+  for (const Limit& limit : {Limit{8.0, 0.002}, Limit{4.0, 0.007}, Limit{2.0, 0.027}}) {
+    for (double streak_px = 0.06; streak_px < 60.0; streak_px *= 1.03) {
+      double mean = 0.0;
+      double weight = 0.0;
+      for (const ExposureInstant& instant : instants_of(0.5 * streak_px)) {
+        const double at_px = streak_px * static_cast<double>(instant.offset_ns) / 20e6;
+        mean += double{instant.weight} * std::cos(2.0 * kPi * at_px / limit.period_px);
+        weight += double{instant.weight};
+      }
+      const double half = kPi * streak_px / limit.period_px;
+      EXPECT_NEAR(mean, std::sin(half) / half, limit.error) << limit.period_px << ", " << streak_px;
+      EXPECT_NEAR(weight, 1.0, 1e-6);
+    }
+  }
 }
 
 TEST(ExposureInstants, CountAVibrationThatReturns) {
@@ -92,7 +115,7 @@ TEST(ExposureInstants, CountAVibrationThatReturns) {
   }
   CameraRequest request = exposed_request(poses.front().pose, poses.back().pose);
   request.T_world_camera = CameraMotion::from_poses(poses).value();
-  EXPECT_EQ(exposure_instants(request, kFlat), 34);
+  EXPECT_EQ(exposure_instants(request, kFlat).size(), 18U);
 }
 
 TEST(ExposureInstants, AreTheMostForStreaksOfAnyLength) {
@@ -105,7 +128,7 @@ TEST(ExposureInstants, AreTheMostForStreaksOfAnyLength) {
   }
   CameraRequest request = exposed_request(poses.front().pose, poses.back().pose);
   request.T_world_camera = CameraMotion::from_poses(poses).value();
-  EXPECT_EQ(exposure_instants(request, kFlat), kMaxInstants);
+  EXPECT_EQ(exposure_instants(request, kFlat).size(), std::size_t{kMaxInstants});
 }
 
 TEST(RowsOfOnePose, MoveLessThanATwentiethOfAPixel) {

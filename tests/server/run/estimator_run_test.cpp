@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/timeline/run_timeline.hpp"
 #include "tests/server/run/witness_run.hpp"
 #include "tests/server/support/simulated_clock.hpp"
 
@@ -110,6 +111,11 @@ TEST(EstimatorRun, DamagedImagesAndMissingAnswersAreCounted) {
   EXPECT_EQ(scores.at("b").hash_mismatches, 0);
   EXPECT_EQ(scores.at("b").unanswered, 1);
   EXPECT_EQ(scores.at("a").unanswered, 0);
+  const auto timeline = RunTimeline::open(flight.folder.path() / "r");
+  ASSERT_TRUE(timeline.ok()) << timeline.error().message;
+  EXPECT_EQ((*timeline)->estimates(1, 4, 1).at(0).unanswered_frames, 0);
+  EXPECT_EQ((*timeline)->estimates(1, 5, 1).at(0).unanswered_frames, 1);
+  EXPECT_EQ((*timeline)->estimates(1, 20, 1).at(0).unanswered_frames, 1);
 }
 
 }  // namespace

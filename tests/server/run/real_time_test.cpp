@@ -9,6 +9,7 @@
 #include "server/record/run_info.hpp"
 #include "server/record/run_records.hpp"
 #include "server/run/run_options.hpp"
+#include "server/timeline/run_timeline.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/run_clock.hpp"
 #include "tests/server/support/server_fixture.hpp"
@@ -83,6 +84,15 @@ std::vector<std::int64_t> frames_where(const EstimatorRecords& estimator, bool d
   return frames;
 }
 
+/// Counts of the first estimator's answers.
+std::vector<std::int64_t> counts(const RunTimeline& timeline, std::int64_t EstimateRow::*count) {
+  std::vector<std::int64_t> values;
+  for (const EstimateRow& row : timeline.estimates(0, 0, timeline.estimate_count(0))) {
+    values.push_back(row.*count);
+  }
+  return values;
+}
+
 /// A run in its own folder with the empty renderer and a simulated clock.
 class RealTime : public ::testing::Test {
  protected:
@@ -104,6 +114,7 @@ TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
     return Result<std::unique_ptr<VoPort>>(
         std::make_unique<SlowEstimator>(clock_, 250 * kMillisecond));
   };
+  options_.timeline = std::make_shared<RunTimeline>(RunInfo{}, std::vector<std::string>{"slow"});
   // 10 Hz against 250 ms: 0 is done at 250 and takes 2, that is done at 500. Frame 5 comes at
   // that instant: either of 4 and 5 may be taken, so the flight ends with frame 4, at 400 ms.
   const auto run =
@@ -124,6 +135,11 @@ TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
   EXPECT_THAT(score.dropped_frame_ranges, ElementsAre(FrameRange{1, 1}, FrameRange{3, 3}));
   EXPECT_EQ(run->metrics.late_frames, 0);
   EXPECT_EQ(run->info.frames, 5);
+  const auto recorded = RunTimeline::open(options_.folder);
+  ASSERT_TRUE(recorded.ok()) << recorded.error().message;
+  EXPECT_THAT(counts(**recorded, &EstimateRow::dropped_frames), ElementsAre(0, 1, 2));
+  EXPECT_THAT(counts(*options_.timeline, &EstimateRow::dropped_frames), ElementsAre(0, 1, 2));
+  EXPECT_THAT(counts(**recorded, &EstimateRow::unanswered_frames), ElementsAre(0, 0, 0));
 }
 
 TEST_F(RealTime, QuickEstimatorDropsNothing) {

@@ -100,6 +100,21 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
     hint: 'Rotation error over the last 100 m of the path',
   },
   latency_ms: { digits: 1, least: 5, hint: 'From the frame to its answer' },
+  late_frames: {
+    digits: 0,
+    least: 4,
+    hint: 'Frames so far that the camera did not draw because the next one was due',
+  },
+  dropped_frames: {
+    digits: 0,
+    least: 4,
+    hint: 'Frames so far that arrived while the estimator was busy',
+  },
+  unanswered_frames: {
+    digits: 0,
+    least: 4,
+    hint: 'Frames so far that the estimator took and did not answer in time',
+  },
 };
 
 export function plotSpecs(state: State, group: PlotGroup): PlotSpec[] {
