@@ -22,12 +22,17 @@ constexpr const char* kFoxgloveWebSocket = "foxglove.websocket.v1";
 
 std::string path_of(const std::string& target) { return target.substr(0, target.find('?')); }
 
-bool offers(const http::request<http::string_body>& upgrade, const std::string& protocol) {
+/// The protocol that the client prefers: the first one in its list that is spoken here (RFC 6455,
+/// section 4.1). Lichtblick lists both, the older one first, and does not know the newer one's
+/// playback states. Empty if there is none.
+std::string foxglove_protocol(const http::request<http::string_body>& upgrade) {
   const auto fields = upgrade.equal_range(http::field::sec_websocket_protocol);
   for (auto field = fields.first; field != fields.second; ++field) {
-    if (http::token_list(field->value()).exists(protocol)) return true;
+    for (const auto& offered : http::token_list(field->value())) {
+      if (offered == kFoxgloveSdk || offered == kFoxgloveWebSocket) return std::string(offered);
+    }
   }
-  return false;
+  return "";
 }
 
 Result<WebSocketService> foxglove_service(const http::request<http::string_body>& upgrade,
@@ -36,11 +41,8 @@ Result<WebSocketService> foxglove_service(const http::request<http::string_body>
   const auto url = parse_target(target);
   if (!url) return Error{ErrorCode::kInvalidArgument, "the target is not a valid URL"};
   WebSocketService service;
-  if (offers(upgrade, kFoxgloveSdk)) {
-    service.protocol = kFoxgloveSdk;
-  } else if (offers(upgrade, kFoxgloveWebSocket)) {
-    service.protocol = kFoxgloveWebSocket;
-  } else {
+  service.protocol = foxglove_protocol(upgrade);
+  if (service.protocol.empty()) {
     return Error{ErrorCode::kInvalidArgument,
                  std::string("Sec-WebSocket-Protocol: must offer ") + kFoxgloveWebSocket + " or " +
                      kFoxgloveSdk};

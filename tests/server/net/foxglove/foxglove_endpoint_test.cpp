@@ -56,7 +56,9 @@ TEST(FoxgloveEndpoint, ChoosesTheSubprotocol) {
   };
   EXPECT_EQ(chosen("foxglove.websocket.v1"), "foxglove.websocket.v1");
   EXPECT_EQ(chosen("foxglove.sdk.v1"), "foxglove.sdk.v1");
-  EXPECT_EQ(chosen("foxglove.websocket.v1, foxglove.sdk.v1"), "foxglove.sdk.v1");
+  // In the client's order of preference.
+  EXPECT_EQ(chosen("foxglove.websocket.v1, foxglove.sdk.v1"), "foxglove.websocket.v1");
+  EXPECT_EQ(chosen("other, foxglove.sdk.v1, foxglove.websocket.v1"), "foxglove.sdk.v1");
   EXPECT_EQ(chosen("other"), "refused");
   EXPECT_THAT(exchange_raw(server.port(), endpoint_upgrade(kEndpointPath, "")),
               AllOf(StartsWith("HTTP/1.1 400"), HasSubstr("foxglove.sdk.v1")));
