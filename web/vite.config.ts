@@ -1,5 +1,4 @@
-import { loadEnv } from 'vite';
-import { defineConfig } from 'vitest/config';
+import { defineConfig, loadEnv } from 'vite';
 
 // `npm run dev` serves the dashboard with hot reload and passes the API on to a running server.
 export default defineConfig(({ mode }) => {
@@ -10,8 +9,6 @@ export default defineConfig(({ mode }) => {
   return {
     base: './',
     build: { target: 'es2022', assetsInlineLimit: 0, sourcemap: false },
-    // The tests read the style sheets.
-    test: { css: true, setupFiles: ['tests/support/file_of_node.ts'] },
     // By number: a bare container may not know the name localhost.
     server: { host: '127.0.0.1', proxy: { '/api': { target: origin, ws: true, headers } } },
   };

@@ -55,3 +55,21 @@ tests_are ON || fail "scripts/build threw the tests of scripts/test away"
 OVERFLY_TEST_CMAKE_ARGUMENTS=$without_benchmark build ||
   fail "a test package that was removed stops the build"
 tests_are OFF || fail "tests are configured without their package"
+
+# The bundle needs fewer npm packages than the dashboard's tests.
+program npm <<EOF
+#!/bin/sh
+echo "\$*" >>"$work/npm"
+EOF
+installed() {
+  : >"$work/npm"
+  OVERFLY_TEST_CMAKE_ARGUMENTS=-DCMAKE_DISABLE_FIND_PACKAGE_benchmark=FALSE build "$@" ||
+    fail "cannot build"
+  grep -o '^ci.*--omit=dev\|^ci' "$work/npm" | cut -d ' ' -f 1,2 || true
+}
+echo '{}' >"$tree/web/package-lock.json"
+touch "$tree/web/dist/index.html"
+[[ $(installed) == "ci --omit=dev" ]] || fail "did not install the bundle's npm packages only"
+[[ -z $(installed) ]] || fail "installed the bundle's npm packages twice"
+[[ $(installed -DOVERFLY_TESTS=ON) == ci ]] || fail "did not install the npm packages of the tests"
+[[ -z $(installed) ]] || fail "installed npm packages though all are there"
