@@ -18,9 +18,22 @@ export async function openFirefox({ width, height }) {
     // Its own search for updates and settings needs a network.
     extraPrefsFirefox: { 'app.update.enabled': false, 'network.captive-portal-service.enabled': false },
   });
-  const [page] = await browser.pages();
-  await page.setViewport({ width, height });
-  return { page, version: await browser.version(), close: () => browser.close() };
+  try {
+    const [page] = await browser.pages();
+    await setViewport(page, width, height);
+    return { page, version: await browser.version(), close: () => browser.close() };
+  } catch (error) {
+    await browser.close();
+    throw error;
+  }
+}
+
+/** Firefox 140 sets the size, but does not know the orientation, which the driver sets with it. */
+async function setViewport(page, width, height) {
+  await page.setViewport({ width, height }).catch((error) => {
+    if (!/unknown command emulation\.setScreenOrientationOverride/.test(error.message)) throw error;
+  });
+  await page.waitForFunction((px) => globalThis.innerWidth === px, {}, width);
 }
 
 /** The dashboard in Firefox: its driver differs from Chromium's in how it waits. */
