@@ -261,18 +261,22 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
 
   step('counts the frames that an estimator has missed', async () => {
     await chooseGroup('estimates');
-    const readouts = page.locator('.plot[data-axis=missed_frames] .readout');
-    await readouts.first().waitFor();
-    const { x, y, width, height } = await plotBox('missed_frames');
-    const valuesAt = async (share, wanted) => {
+    const valuesAt = async (axis, share, wanted) => {
+      await page.locator(`.plot[data-axis=${axis}] .readout`).first().waitFor();
+      const { x, y, width, height } = await plotBox(axis);
       await page.mouse.move(x + width * share, y + height / 2);
-      await dashboard.until((texts) => {
-        const all = document.querySelectorAll('.plot[data-axis=missed_frames] .readout');
-        return [...all].map(({ textContent }) => textContent).join() === texts;
-      }, wanted);
+      await dashboard.until(
+        ([of, texts]) => {
+          const all = document.querySelectorAll(`.plot[data-axis=${of}] .readout`);
+          return [...all].map(({ textContent }) => textContent).join() === texts;
+        },
+        [axis, wanted],
+      );
     };
-    await valuesAt(0.3, 'A 0,A 0,A 0,B 0,B 0,B 0');
-    await valuesAt(0.9, 'A 0,A 10,A 0,B 0,B 10,B 0');
+    await valuesAt('missed_frames', 0.3, 'A 0,A 0,A 0,B 0,B 0,B 0');
+    await valuesAt('missed_frames', 0.9, 'A 0,A 10,A 0,B 0,B 10,B 0');
+    // Only the estimator that was busy has a curve.
+    await valuesAt('dropped_frames', 0.9, 'A 10,B 10');
     await dashboard.screenshot('plots_missed');
     await page.mouse.move(2, 2);
     await chooseGroup('pose');

@@ -1,13 +1,23 @@
 // A headless Firefox with a new profile, driven by WebDriver BiDi.
+import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import puppeteer from 'puppeteer-core';
 import { Dashboard } from './dashboard.mjs';
 
 const kExecutable = process.env.FIREFOX_BIN ?? '/usr/bin/firefox-esr';
 
-/** Why there is no Firefox; false when there is one. */
+/** Firefox 140 lacks commands that the driver sends. */
+const kTooOld = 140;
+
+/** Why there is no Firefox that can be driven; false when there is one. */
 export function firefoxMissing() {
-  return existsSync(kExecutable) ? false : `${kExecutable} is not installed`;
+  if (!existsSync(kExecutable)) return `${kExecutable} is not installed`;
+  const version = execFileSync(kExecutable, ['--version'], {
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'ignore'],
+  }).trim();
+  const major = Number(/Firefox (\d+)/.exec(version)?.[1]);
+  return major > kTooOld ? false : `${version} is too old: Debian's security updates have a later one`;
 }
 
 export async function openFirefox({ width, height }) {
@@ -20,20 +30,12 @@ export async function openFirefox({ width, height }) {
   });
   try {
     const [page] = await browser.pages();
-    await setViewport(page, width, height);
+    await page.setViewport({ width, height });
     return { page, version: await browser.version(), close: () => browser.close() };
   } catch (error) {
     await browser.close();
     throw error;
   }
-}
-
-/** Firefox 140 sets the size, but does not know the orientation, which the driver sets with it. */
-async function setViewport(page, width, height) {
-  await page.setViewport({ width, height }).catch((error) => {
-    if (!/unknown command emulation\.setScreenOrientationOverride/.test(error.message)) throw error;
-  });
-  await page.waitForFunction((px) => globalThis.innerWidth === px, {}, width);
 }
 
 /** The dashboard in Firefox: its driver differs from Chromium's in how it waits. */
