@@ -26,9 +26,9 @@ struct ExposureInstant {
 /// The most instants of an exposure.
 inline constexpr int kMaxInstants = 128;
 /// Instants and weights of Gauss-Legendre quadrature over the exposure: one per pixel of the
-/// longest streak and one more, at most kMaxInstants; a single one for streaks below 0.25 px. Light
-/// with a period of 8, 4 and 2 px on the image has errors of at most 0.2, 0.7 and 2.7 % of its
-/// amplitude.
+/// longest streak and one more, at most kMaxInstants; a single one for streaks below 0.25 px. For
+/// streaks up to 127 px, light with a period of 8, 4 and 2 px on the image has errors of at most
+/// 0.2, 0.7 and 2.7 % of its amplitude.
 [[nodiscard]] std::vector<ExposureInstant> exposure_instants(const CameraRequest& request,
                                                              const HeightQuery& ground);
 

@@ -54,15 +54,18 @@ Result<std::optional<evaluation::FlightFrame>> late_frame_from(const Json& line)
 Status read_camera_rows(const fs::path& file,
                         CameraRecords& camera,
                         std::vector<evaluation::FlightFrame>& late_frames) {
+  std::int64_t late_so_far = 0;
   return for_each_line(file, [&](const Json& line) -> Status {
     const auto late = late_frame_from(line);
     if (!late) return late.error();
     if (*late) {
+      ++late_so_far;
       late_frames.push_back(**late);
       return {};
     }
     Result<FrameRow> record = frame_row_from(line, camera.T_body_camera);
     if (!record) return record.error();
+    record->late_frames = late_so_far;
     camera.frames.push_back(std::move(*record));
     return {};
   });

@@ -212,11 +212,15 @@ void RunRecorder::set_length(std::int64_t duration_ns, std::int64_t frames_total
   info_.frames_total = frames_total;
 }
 
-Status RunRecorder::add_frame(const FrameRow& row,
+Status RunRecorder::add_frame(FrameRow row,
                               const std::shared_ptr<const Image>& image,
                               const Image16& deep,
                               std::size_t camera) {
   const std::int64_t frame = row.frame;
+  // Lines of late frames are those of the main camera.
+  if (camera == kMainCamera) {
+    row.late_frames = static_cast<std::int64_t>(records_.late_frames.size());
+  }
   if (Status status = frame_lines_[camera].append(json_from(row)); !status) return status;
   records_.cameras[camera].frames.push_back(row);
   timeline_->append_frame(row, camera);

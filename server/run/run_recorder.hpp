@@ -54,7 +54,7 @@ class RunRecorder {
   /// @param camera  index; of each frame the main camera's record comes first
   /// @param image  null if it was lost: then it is neither recorded nor shown
   /// @param deep  the same image from a sensor deeper than 8 bit, else empty
-  Status add_frame(const FrameRow& row,
+  Status add_frame(FrameRow row,
                    const std::shared_ptr<const Image>& image,
                    const Image16& deep,
                    std::size_t camera);

@@ -88,8 +88,8 @@ void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns)
     const bool known = row.exposure_ns != 0 || row.saturated_fraction > 0.0;
     return known ? rounded(row.saturated_fraction, kDigits) : json(nullptr);
   });
-  add("late_tiles",
-      [](const Row& row) { return row.late_tiles == 0 ? json(nullptr) : json(row.late_tiles); });
+  add("late_tiles", [](const Row& row) { return count_or_null(row.late_tiles); });
+  add("late_frames", [](const Row& row) { return count_or_null(row.late_frames); });
   add("stamp_offset_ns", [](const Row& row) {
     return row.stamp_offset_ns == 0 ? json(nullptr) : json(row.stamp_offset_ns);
   });
@@ -167,7 +167,7 @@ json pose_json(const Pose& T_world_body) {
   return pose;
 }
 
-json truth_columns(const std::vector<server::FrameRow>& rows, std::size_t first) {
+json truth_columns(const std::vector<server::FrameRow>& rows) {
   using Row = server::FrameRow;
   constexpr double kDigits = 1e4;
   json columns = json::object();
@@ -178,13 +178,6 @@ json truth_columns(const std::vector<server::FrameRow>& rows, std::size_t first)
   columns["void_fraction"] =
       column(rows, [](const Row& row) { return rounded(row.void_fraction, kDigits); });
   add_image_columns(rows, &columns);
-  // Frames are numbered from 0, and a late one has a number but no row.
-  auto index = static_cast<std::int64_t>(first);
-  add_if_said(
-      rows,
-      "late_frames",
-      [&](const Row& row) { return count_or_null(row.frame - index++); },
-      &columns);
   add_pose_columns(
       rows, [](const Row& row) { return std::optional<Pose>(row.T_world_body); }, &columns);
   return columns;

@@ -20,9 +20,7 @@ namespace overfly::net {
 [[nodiscard]] std::string counter_column(const std::string& counter);
 
 /// Columns of the stream `truth`, of `estimate/NAME`, and of `log`.
-/// @param first  number of the first row in its stream
-[[nodiscard]] nlohmann::json truth_columns(const std::vector<server::FrameRow>& rows,
-                                           std::size_t first = 0);
+[[nodiscard]] nlohmann::json truth_columns(const std::vector<server::FrameRow>& rows);
 /// Poses and errors of the estimates by `alignment`, by default as recorded, and a column
 /// `counter.NAME` for each of the estimator's counters so far.
 [[nodiscard]] nlohmann::json estimate_columns(const server::RunTimeline& timeline,

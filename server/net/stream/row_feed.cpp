@@ -42,7 +42,7 @@ std::optional<std::string> RowFeed::next_of(Stream* stream) {
     case Stream::Kind::kTruth: {
       const auto rows = timeline_->frames(stream->next_row, kMaxRows);
       count = rows.size();
-      if (count > 0) columns = truth_columns(rows, stream->next_row);
+      if (count > 0) columns = truth_columns(rows);
       break;
     }
     case Stream::Kind::kEstimate: {

@@ -36,6 +36,7 @@ struct FrameRow {
   std::int64_t source_image = -1;
   /// The camera vibrates: the body's pose does not follow from the camera's and the mount.
   bool shaken = false;
+  std::int64_t late_frames = 0;  ///< of this camera, before this frame: the next one was due
 };
 
 /// One estimator's answer to a frame as a viewer sees it: in the estimator's own frame and, once

@@ -34,7 +34,7 @@ TEST(RowEncoder, GivesEveryColumnOneValueARow) {
   row.T_world_body = pose_of(0, 0, 90);
   row.texels_per_pixel_median = 1.5;
   row.void_fraction = std::numeric_limits<double>::quiet_NaN();
-  const auto columns = truth_columns({row, row}, 3);
+  const auto columns = truth_columns({row, row});
   EXPECT_EQ(columns.size(), 10U);
   for (const auto& [name, values] : columns.items()) EXPECT_EQ(values.size(), 2U) << name;
   EXPECT_EQ(columns["t_ns"][1], 96'774'194);
@@ -47,6 +47,7 @@ TEST(RowEncoder, SaysWhatTheSensorAndTheFaultsDidWhereTheyDid) {
   row.exposure_ns = 2'000'000;
   row.gain = 1.5;
   row.late_tiles = 3;
+  row.late_frames = 2;
   row.stamp_offset_ns = -4000;
   row.faults = {"blackout", "stamp_offset"};
   const auto columns = truth_columns({plain, row});
@@ -54,18 +55,10 @@ TEST(RowEncoder, SaysWhatTheSensorAndTheFaultsDidWhereTheyDid) {
   EXPECT_EQ(columns.at("gain").dump(), "[null,1.5]");
   EXPECT_EQ(columns.at("saturated_fraction").dump(), "[null,0.0]");
   EXPECT_EQ(columns.at("late_tiles").dump(), "[null,3]");
+  EXPECT_EQ(columns.at("late_frames").dump(), "[null,2]");
   EXPECT_EQ(columns.at("stamp_offset_ns").dump(), "[null,-4000]");
   EXPECT_EQ(columns.at("faults").dump(), R"([null,["blackout","stamp_offset"]])");
   EXPECT_FALSE(truth_columns({plain}).contains("faults"));
-}
-
-/// Late frames have a number and no row.
-TEST(RowEncoder, CountsLateFramesFromTheGapsInTheNumbers) {
-  std::vector<server::FrameRow> rows;
-  for (const std::int64_t frame : {0, 2, 5, 7, 10}) rows.emplace_back().frame = frame;
-  EXPECT_EQ(truth_columns(rows).at("late_frames").dump(), "[null,1,3,4,6]");
-  EXPECT_EQ(truth_columns({rows[3], rows[4]}, 3).at("late_frames").dump(), "[4,6]");
-  EXPECT_FALSE(truth_columns({rows[0]}).contains("late_frames"));
 }
 
 TEST(RowEncoder, CountsDroppedAndUnansweredFramesUntilEachAnswer) {

@@ -184,6 +184,7 @@ TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
     return Result<std::unique_ptr<renderer::Renderer>>(std::make_unique<SlowRenderer>(
         renderer::create_noop_renderer(std::move(tiles)), clock_, 250 * kMillisecond));
   };
+  options_.timeline = std::make_shared<RunTimeline>(RunInfo{}, std::vector<std::string>{"p"});
   // 10 Hz against 250 ms a frame: 0 until 250, so 1 (due by 200) is late; 2 until 500, so 3 and 4
   // (due by 400 and 500) are; 5 until 750, so 6 is; 7 until 1000, so 8 and 9 are; 10.
   const auto run = run_scenario(
@@ -204,6 +205,13 @@ TEST_F(RealTime, RendererThatFallsBehindSkipsFramesWhoseTimeHasPassed) {
   EXPECT_DOUBLE_EQ(score.score.coverage, 5.0 / 11.0);
   EXPECT_THAT(run->metrics.late_frame_ranges,
               ElementsAre(FrameRange{1, 1}, FrameRange{3, 4}, FrameRange{6, 6}, FrameRange{8, 9}));
+  const auto recorded = RunTimeline::open(options_.folder);
+  ASSERT_TRUE(recorded.ok()) << recorded.error().message;
+  for (const RunTimeline* timeline : {options_.timeline.get(), recorded->get()}) {
+    std::vector<std::int64_t> late_so_far;
+    for (const FrameRow& row : timeline->frames(0, 5)) late_so_far.push_back(row.late_frames);
+    EXPECT_THAT(late_so_far, ElementsAre(0, 1, 3, 4, 6));
+  }
 }
 
 TEST_F(RealTime, PicturesForViewersGiveWayToFramesThatComeLate) {

@@ -212,7 +212,7 @@ function missedSpecs(state: State): PlotSpec[] {
     curve: () => missedCurve(track),
   }));
   const hint =
-    'Frames without an answer so far: dropped while the estimator was busy, late, or never given';
+    'Frames without an answer so far: dropped while the estimator was busy, not answered in time, or never given';
   return [
     {
       key: 'missed_frames',
