@@ -275,8 +275,9 @@ describe('the plots', { skip, timeout: 600_000 }, () => {
     };
     await valuesAt('missed_frames', 0.3, 'A 0,A 0,A 0,B 0,B 0,B 0');
     await valuesAt('missed_frames', 0.9, 'A 0,A 10,A 0,B 0,B 10,B 0');
-    // Only the estimator that was busy has a curve.
-    await valuesAt('dropped_frames', 0.9, 'A 10,B 10');
+    await valuesAt('dropped_frames', 0.3, 'A 0,A 0,A 0,B 0,B 0,B 0');
+    await valuesAt('dropped_frames', 0.9, 'A 0,A 10,A 0,B 0,B 10,B 0');
+    assert.equal(await page.locator('.plot[data-axis=unanswered_frames]').count(), 0);
     await dashboard.screenshot('plots_missed');
     await page.mouse.move(2, 2);
     await chooseGroup('pose');

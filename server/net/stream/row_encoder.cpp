@@ -61,16 +61,16 @@ json column(const Rows& rows, ValueOf value_of) {
 }
 
 /// Adds a column unless all of its values are null: most runs have no sensor and no faults.
-template <typename Rows, typename ValueOf>
-void add_if_said(const Rows& rows, const char* name, ValueOf value_of, json* columns) {
+template <typename ValueOf>
+void add_if_said(const std::vector<server::FrameRow>& rows,
+                 const char* name,
+                 ValueOf value_of,
+                 json* columns) {
   json values = column(rows, value_of);
   const bool said =
       std::any_of(values.begin(), values.end(), [](const json& value) { return !value.is_null(); });
   if (said) (*columns)[name] = std::move(values);
 }
-
-/// Null for 0: most runs miss no frame.
-json count_or_null(std::int64_t count) { return count > 0 ? json(count) : json(nullptr); }
 
 /// Effects of sensor, tiles and faults on each frame.
 void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns) {
@@ -88,8 +88,8 @@ void add_image_columns(const std::vector<server::FrameRow>& rows, json* columns)
     const bool known = row.exposure_ns != 0 || row.saturated_fraction > 0.0;
     return known ? rounded(row.saturated_fraction, kDigits) : json(nullptr);
   });
-  add("late_tiles", [](const Row& row) { return count_or_null(row.late_tiles); });
-  add("late_frames", [](const Row& row) { return count_or_null(row.late_frames); });
+  add("late_tiles",
+      [](const Row& row) { return row.late_tiles == 0 ? json(nullptr) : json(row.late_tiles); });
   add("stamp_offset_ns", [](const Row& row) {
     return row.stamp_offset_ns == 0 ? json(nullptr) : json(row.stamp_offset_ns);
   });
@@ -177,6 +177,7 @@ json truth_columns(const std::vector<server::FrameRow>& rows) {
       column(rows, [](const Row& row) { return rounded(row.texels_per_pixel_median, kDigits); });
   columns["void_fraction"] =
       column(rows, [](const Row& row) { return rounded(row.void_fraction, kDigits); });
+  columns["late_frames"] = column(rows, [](const Row& row) { return row.late_frames; });
   add_image_columns(rows, &columns);
   add_pose_columns(
       rows, [](const Row& row) { return std::optional<Pose>(row.T_world_body); }, &columns);
@@ -193,16 +194,8 @@ json estimate_columns(const server::RunTimeline& timeline,
   columns["t_ns"] = column(rows, [](const Row& row) { return row.sample.t_ns; });
   columns["state"] = column(rows, [](const Row& row) { return to_string(row.sample.state); });
   columns["latency_ms"] = column(rows, [](const Row& row) { return rounded(row.latency_ms, 1e3); });
-  add_if_said(
-      rows,
-      "dropped_frames",
-      [](const Row& row) { return count_or_null(row.dropped_frames); },
-      &columns);
-  add_if_said(
-      rows,
-      "unanswered_frames",
-      [](const Row& row) { return count_or_null(row.unanswered_frames); },
-      &columns);
+  columns["dropped_frames"] = column(rows, [](const Row& row) { return row.dropped_frames; });
+  columns["unanswered_frames"] = column(rows, [](const Row& row) { return row.unanswered_frames; });
   add_pose_columns(
       rows, [&](const Row& row) { return alignment.T_world_body(row); }, &columns);
   const auto errors = server::errors_of(timeline, estimator, rows, alignment);

@@ -46,6 +46,8 @@ export interface PlotSpec {
   digits: number;
   /** Minimum span of the axis, so that noise does not fill the plot. */
   least: number;
+  /** Counts from 0 on; there is no plot before it has counted something. */
+  counts?: true;
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   curves: CurveSpec[];
@@ -101,16 +103,19 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
   },
   latency_ms: { digits: 1, least: 5, hint: 'From the frame to its answer' },
   late_frames: {
+    counts: true,
     digits: 0,
     least: 4,
     hint: 'Frames so far that the camera did not draw because the next one was due',
   },
   dropped_frames: {
+    counts: true,
     digits: 0,
     least: 4,
     hint: 'Frames so far that arrived while the estimator was busy',
   },
   unanswered_frames: {
+    counts: true,
     digits: 0,
     least: 4,
     hint: 'Frames so far that the estimator took and did not answer in time',
@@ -175,6 +180,7 @@ function poseAtClock({ run, name }: Track) {
 /** One plot for each column of the group of which values have arrived. */
 function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
   const specs = new Map<string, PlotSpec>();
+  const counted = new Set<string>();
   for (const track of group === 'errors' ? drawnTracks(state) : shownTracks(state)) {
     for (const series of track.run.series) {
       if (groupOf(series) !== group || trackOf(series) !== track.name) continue;
@@ -182,6 +188,7 @@ function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
       if (table?.has(series.column) !== true) continue;
       const spec = specs.get(series.column) ?? specOf(series);
       specs.set(series.column, spec);
+      if (table.last(series.column) > 0) counted.add(series.column);
       spec.curves.push({
         name: track.label,
         short: track.letter,
@@ -191,7 +198,7 @@ function seriesSpecs(state: State, group: PlotGroup): PlotSpec[] {
       });
     }
   }
-  return [...specs.values()];
+  return [...specs.values()].filter(({ key, counts }) => counts !== true || counted.has(key));
 }
 
 function specOf({ column, label, unit }: SeriesInfo): PlotSpec {

@@ -106,6 +106,34 @@ describe('plotSpecs', () => {
     expect(missed?.curves[1]?.curve()).toBeNull();
   });
 
+  it('shows a count of frames from its first one on, from 0', () => {
+    const viewing = twoRuns();
+    const series = {
+      column: 'dropped_frames',
+      label: 'dropped frames',
+      unit: 'frames',
+      group: 'd',
+    };
+    const dropped = (run: string, counts: number[]) => {
+      viewing.socket.receive({
+        type: 'series',
+        run,
+        series: [{ stream: 'estimate/feature', ...series }],
+      });
+      const columns = { frame: [0, 1], t_ns: [0, 1e9], dropped_frames: counts };
+      viewing.socket.receive({ type: 'rows', run, stream: 'estimate/feature', seq: 0, columns });
+      const { state } = viewing.store;
+      return plotSpecs(state, 'estimates').find(({ key }) => key === 'dropped_frames');
+    };
+    expect(dropped('r1', [0, 0])).toBeUndefined();
+    const plot = dropped('r2', [0, 3]);
+    expect(plot?.label).toBe('Dropped frames');
+    expect(plot?.curves.map(({ curve }) => Array.from(curve()?.values ?? []))).toEqual([
+      [0, 0],
+      [0, 3],
+    ]);
+  });
+
   it('reads poses at the clock as the server sends them', () => {
     const viewing = twoRuns();
     const pose = { x_m: 3, y_m: 0, z_m: 0, roll_deg: 0, pitch_deg: 0, yaw_deg: -82 };
