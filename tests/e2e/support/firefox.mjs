@@ -17,7 +17,7 @@ export function firefoxMissing() {
     stdio: ['ignore', 'pipe', 'ignore'],
   }).trim();
   const major = Number(/Firefox (\d+)/.exec(version)?.[1]);
-  return major > kTooOld ? false : `${version} is too old: Debian's security updates have a later one`;
+  return major <= kTooOld && `${version} is too old: Debian's security updates have a later one`;
 }
 
 export async function openFirefox({ width, height }) {
