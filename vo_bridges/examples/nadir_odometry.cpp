@@ -26,9 +26,10 @@ struct NadirOdometry final : Estimator {
     Eigen::MatrixX2d J(rows * cols, 2);  // derivative of the brightness by the shift
     J.col(0) = (part(now, 0.5, 0) - part(now, -0.5, 0)).reshaped();
     J.col(1) = (part(now, 0, 0.5) - part(now, 0, -0.5)).reshaped();
+    const Eigen::Matrix2d H_inverse = J.transpose().lazyProduct(J).eval().inverse();
     for (int round = 0; round < 30 && std::abs(shift) < double(rim - 1); ++round) {
       const Image error = part(before, shift.real(), shift.imag()) - part(now, 0, 0);
-      const Eigen::Vector2d step = J.householderQr().solve(error.reshaped());
+      const Eigen::Vector2d step = H_inverse * J.transpose().lazyProduct(error.reshaped());
       shift -= Complex(step.x(), step.y());
       if (step.norm() < 1e-3) return shift;
     }
