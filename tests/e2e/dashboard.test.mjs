@@ -282,9 +282,21 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.chooseEstimators();
     const second = await dashboard.launch();
     await dashboard.untilFrames(['camera', 'scene'], 10);
-    await dashboard.page
-      .locator(`.run[data-run="${second}"] button[aria-label="Stop this run"]`)
-      .click();
+    const stop = dashboard.page.locator(
+      `.run[data-run="${second}"] button[aria-label="Stop this run"]`,
+    );
+    // The button keeps its place and the focus while the flight goes on.
+    const button = await stop.elementHandle();
+    await button.focus();
+    const bar = `.run[data-run="${second}"] .progress i`;
+    const before = await dashboard.page.locator(bar).getAttribute('style');
+    await dashboard.until(
+      ([bar, before]) => document.querySelector(bar).getAttribute('style') !== before,
+      [bar, before],
+    );
+    assert.ok(await button.evaluate((element) => element === document.activeElement));
+    await dashboard.screenshot('flying_in_real_time');
+    await stop.click();
     await dashboard.untilStatus(second, 'cancelled');
     await dashboard.page
       .locator(`.run[data-run="${second}"] button[aria-label="Delete this run"]`)

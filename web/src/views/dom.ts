@@ -33,6 +33,12 @@ export function setText(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** The same for the part of an element that a selector finds. */
+export function setTextOf(element: HTMLElement, selector: string, text: string): void {
+  const part = element.querySelector<HTMLElement>(selector);
+  if (part !== null) setText(part, text);
+}
+
 export function setAttribute(element: HTMLElement, name: string, value: string | null): void {
   if (element.getAttribute(name) === value) return;
   if (value === null) element.removeAttribute(name);

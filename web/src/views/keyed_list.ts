@@ -6,6 +6,8 @@ export interface KeyedEntry {
   /** Differs if the entry must be made again. */
   key: string;
   make: () => HTMLElement;
+  /** Sets, in a new or kept element, what changes without another key: its buttons keep the focus. */
+  refresh?: (element: HTMLElement) => void;
 }
 
 export class KeyedList {
@@ -21,7 +23,7 @@ export class KeyedList {
       this.made.delete(id);
     }
     let place = this.root.firstElementChild;
-    for (const { id, key, make } of entries) {
+    for (const { id, key, make, refresh } of entries) {
       const before = this.made.get(id);
       let element = before?.element;
       if (element === undefined || before?.key !== key) {
@@ -33,6 +35,7 @@ export class KeyedList {
         element = next;
         this.made.set(id, { key, element });
       }
+      refresh?.(element);
       if (place === element) place = place.nextElementSibling;
       else this.root.insertBefore(element, place);
     }

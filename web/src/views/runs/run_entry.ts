@@ -6,12 +6,15 @@ import type { RunTraits } from '../../store/runs/run_traits';
 import type { EstimatorResult, Run } from '../../protocol/rest_types';
 import { isActive } from '../../protocol/rest_types';
 import { failedEstimators } from '../../store/studies/study_form';
-import { h } from '../dom';
+import { h, setTextOf } from '../dom';
 import { icon } from '../icons';
 import type { Context } from '../view';
 
 /** Estimators whose results an entry shows. */
 const kShownResults = 3;
+
+/** What changes while a run waits and flies. */
+const kNoProgress = { frames: 0, duration_ns: 0, queue_position: null, left_s: null, notice: null };
 
 /** What an entry shows in addition to the run. */
 export interface EntryState {
@@ -40,14 +43,6 @@ export class RunEntries {
   ) {}
 
   entry(run: Run, state: EntryState): HTMLElement {
-    const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
-    const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
-    const detail = [
-      formatDate(run.created_utc),
-      length,
-      run.results.length > 0 ? resultsText(run) : run.estimators.join(', ') || 'no estimators',
-      progressText(run),
-    ].filter((part) => part !== '');
     return h(
       'li',
       {
@@ -65,18 +60,8 @@ export class RunEntries {
         },
         h('span', { class: 'run-name' }, run.title || run.scenario),
         traitsLine(state.traits),
-        h(
-          'span',
-          { class: 'run-detail', 'data-role': 'detail', title: resultsHint(run) },
-          detail.join(' · '),
-        ),
-        isActive(run)
-          ? h(
-              'span',
-              { class: 'progress' },
-              h('i', { style: `width:${(share * 100).toFixed(1)}%` }),
-            )
-          : null,
+        h('span', { class: 'run-detail', 'data-role': 'detail', title: resultsHint(run) }),
+        isActive(run) ? h('span', { class: 'progress' }, h('i')) : null,
       ),
       h('span', { class: 'run-chips' }, ...chips(run), ...this.marks(run)),
       h(
@@ -89,6 +74,18 @@ export class RunEntries {
         isActive(run) ? this.cancelButton(run) : this.deleteButton(run, state.confirming),
       ),
     );
+  }
+
+  /** What an entry shows but for the progress of its run. */
+  key(run: Run, state: EntryState): string {
+    return JSON.stringify([{ ...run, ...kNoProgress }, state]);
+  }
+
+  /** Shows the progress of its run in an entry. */
+  showProgress(entry: HTMLElement, run: Run): void {
+    setTextOf(entry, '[data-role=detail]', detailText(run));
+    const bar = entry.querySelector<HTMLElement>('.progress i');
+    if (bar !== null) bar.style.width = flownShare(run);
   }
 
   /** Tags, which search for themselves, and whether there is a note. */
@@ -225,6 +222,25 @@ function traitsLine({ differing, common }: RunTraits): HTMLElement {
     first === '' ? null : h('b', {}, first),
     gap + rest,
   );
+}
+
+/** When, how long, with what result, and what is still to come. */
+function detailText(run: Run): string {
+  const length = run.duration_ns > 0 ? `${formatNumber(run.duration_ns / 1e9, 0)} s` : '';
+  return [
+    formatDate(run.created_utc),
+    length,
+    run.results.length > 0 ? resultsText(run) : run.estimators.join(', ') || 'no estimators',
+    progressText(run),
+  ]
+    .filter((part) => part !== '')
+    .join(' · ');
+}
+
+/** The part of the frames that are flown, "12.3%". */
+function flownShare(run: Run): string {
+  const share = run.frames_total > 0 ? run.frames / run.frames_total : 0;
+  return `${(share * 100).toFixed(1)}%`;
 }
 
 /** Place in the queue, or time left; '' if neither is known. */

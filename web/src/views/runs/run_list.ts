@@ -133,8 +133,12 @@ export class RunList implements View {
           watched: watched.size,
           confirming: this.confirming === run.id,
         };
-        const key = JSON.stringify([run, entry]);
-        return { id: run.id, key, make: () => this.entries.entry(run, entry) };
+        return {
+          id: run.id,
+          key: this.entries.key(run, entry),
+          make: () => this.entries.entry(run, entry),
+          refresh: (element) => this.entries.showProgress(element, run),
+        };
       }),
     );
     const rest = found.length - most;

@@ -3,7 +3,8 @@ import type { StudyEntry } from '../../protocol/study_types';
 import { isOpen } from '../../protocol/study_types';
 import type { Topic } from '../../store/state';
 import { studyDetail } from '../../store/studies/study_words';
-import { h, rebuild, setText } from '../dom';
+import { h, rebuild, setAttribute, setText, setTextOf } from '../dom';
+import { KeyedList } from '../keyed_list';
 import type { Context, View } from '../view';
 import { StudyFormView } from './study_form_view';
 import { StudyHead } from './study_head';
@@ -12,6 +13,7 @@ import { resultParts } from './study_results';
 export class StudyPageView implements View {
   readonly root: HTMLElement;
   private readonly list = h('ul', { class: 'log-rows', 'aria-label': 'Studies' });
+  private readonly drawn = new KeyedList(this.list);
   private readonly head: StudyHead;
   private readonly form: StudyFormView;
   private readonly result = h('div', { class: 'sweep-body study-body', tabindex: 0 });
@@ -95,29 +97,36 @@ export class StudyPageView implements View {
   }
 
   private drawList(studies: readonly StudyEntry[], chosen: string | null): void {
-    rebuild(this.list, JSON.stringify([studies, chosen]), () =>
-      studies.map((study) =>
-        h(
-          'li',
-          { class: 'log-row', 'aria-current': study.name === chosen ? 'true' : undefined },
-          h(
-            'button',
-            {
-              class: 'log-choice',
-              'data-study': study.name,
-              'data-kind': study.kind,
-              'data-state': study.state,
-              title: study.title,
-              onclick: () => void this.context.studies.choose(study.name),
-            },
-            h('span', { class: 'log-name' }, study.title),
-            h(
-              'span',
-              { class: 'sweep-detail' },
-              `${study.cancelling ? 'cancelling' : study.state} · ${studyDetail(study)}`,
-            ),
-          ),
-        ),
+    this.drawn.show(
+      studies.map((study) => ({
+        id: study.name,
+        key: study.title,
+        make: () => this.entry(study),
+        refresh: (entry) => {
+          const state = study.cancelling ? 'cancelling' : study.state;
+          setAttribute(entry, 'aria-current', study.name === chosen ? 'true' : null);
+          setTextOf(entry, '.sweep-detail', `${state} · ${studyDetail(study)}`);
+          entry.querySelector('button')?.setAttribute('data-state', study.state);
+        },
+      })),
+    );
+  }
+
+  private entry({ name, kind, title }: StudyEntry): HTMLElement {
+    return h(
+      'li',
+      { class: 'log-row' },
+      h(
+        'button',
+        {
+          class: 'log-choice',
+          'data-study': name,
+          'data-kind': kind,
+          title,
+          onclick: () => void this.context.studies.choose(name),
+        },
+        h('span', { class: 'log-name' }, title),
+        h('span', { class: 'sweep-detail' }),
       ),
     );
   }

@@ -12,7 +12,8 @@ import {
   spreadText,
   valueText,
 } from '../../store/sweeps/sweep_matrix';
-import { h, rebuild, setText } from '../dom';
+import { h, rebuild, setAttribute, setText, setTextOf } from '../dom';
+import { KeyedList } from '../keyed_list';
 import type { Context, View } from '../view';
 import { labelled, select } from './sweep_controls';
 import { EnvelopeView } from './envelope_view';
@@ -23,6 +24,7 @@ import { SweepResultsView } from './sweep_results_view';
 export class SweepPageView implements View {
   readonly root: HTMLElement;
   private readonly list = h('ul', { class: 'log-rows', 'aria-label': 'Sweeps' });
+  private readonly drawn = new KeyedList(this.list);
   private readonly add = h('button', { class: 'primary', 'data-role': 'new-sweep' }, 'New sweep');
   private readonly head: SweepHead;
   private readonly form: SweepFormView;
@@ -110,22 +112,32 @@ export class SweepPageView implements View {
   }
 
   private drawList(sweeps: readonly SweepEntry[], chosen: string | null): void {
-    rebuild(this.list, JSON.stringify([sweeps, chosen]), () =>
-      sweeps.map((sweep) =>
-        h(
-          'li',
-          { class: 'log-row', 'aria-current': sweep.name === chosen ? 'true' : undefined },
-          h(
-            'button',
-            {
-              class: 'log-choice',
-              'data-sweep': sweep.name,
-              onclick: () => void this.context.sweeps.choose(sweep.name),
-            },
-            h('span', { class: 'log-name' }, sweep.name),
-            h('span', { class: 'sweep-detail' }, sweepDetail(sweep)),
-          ),
-        ),
+    this.drawn.show(
+      sweeps.map((sweep) => ({
+        id: sweep.name,
+        key: '',
+        make: () => this.entry(sweep.name),
+        refresh: (entry) => {
+          setAttribute(entry, 'aria-current', sweep.name === chosen ? 'true' : null);
+          setTextOf(entry, '.sweep-detail', sweepDetail(sweep));
+        },
+      })),
+    );
+  }
+
+  private entry(name: string): HTMLElement {
+    return h(
+      'li',
+      { class: 'log-row' },
+      h(
+        'button',
+        {
+          class: 'log-choice',
+          'data-sweep': name,
+          onclick: () => void this.context.sweeps.choose(name),
+        },
+        h('span', { class: 'log-name' }, name),
+        h('span', { class: 'sweep-detail' }),
       ),
     );
   }
