@@ -107,7 +107,7 @@ TEST_F(FlySweep, AFlightThatFailsIsFlownAgainThenListedApart) {
 }
 
 TEST_F(FlySweep, AFlightHasALimitOfTime) {
-  write_program("sleep 60");
+  write_program("exec sleep 60");
   const auto flown = fly(sweep(R"("axes": [], "timeout_s": 1, "retries": 0)"));
   ASSERT_TRUE(flown.ok());
   ASSERT_EQ(flown->results.by_key().size(), 1U);

@@ -141,7 +141,7 @@ TEST_F(FolderSweep, ThreeWorkersFlyEachFlightOnce) {
 /// Killed with SIGKILL, or its machine lost: its process and its flight end without a word.
 TEST_F(FolderSweep, AFlightOfAWorkerThatVanishesIsFlownAgain) {
   write_program("if [ ! -e '" + (own_folder() / "began").string() + "' ]; then touch '" +
-                (own_folder() / "began").string() + "'; sleep 1000; fi");
+                (own_folder() / "began").string() + "'; exec sleep 1000; fi");
   const Sweep two = sweep(kTwoSpeeds);
   control(two, kShortLease_s);
   {
@@ -180,7 +180,7 @@ TEST_F(FolderSweep, AFrozenWorkerThatWakesDeliversNothing) {
 /// Preempted or cancelled (SIGTERM): the flight is free at once, without waiting for the lease.
 TEST_F(FolderSweep, AStoppedWorkerGivesItsFlightBack) {
   write_program("if [ ! -e '" + (own_folder() / "began").string() + "' ]; then touch '" +
-                (own_folder() / "began").string() + "'; sleep 1000; fi");
+                (own_folder() / "began").string() + "'; exec sleep 1000; fi");
   const Sweep two = sweep(kTwoSpeeds);
   control(two);
   JobWorker stopped = worker();
@@ -193,7 +193,7 @@ TEST_F(FolderSweep, AStoppedWorkerGivesItsFlightBack) {
 }
 
 TEST_F(FolderSweep, AFlightThatEndsItsWorkerEachTimeIsNotFlownForEver) {
-  write_program("echo x >> '" + (own_folder() / "begun").string() + "'; sleep 1000");
+  write_program("echo x >> '" + (own_folder() / "begun").string() + "'; exec sleep 1000");
   const Sweep one = sweep(R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10]}],
                              "retries": 0)");
   control(one, kShortLease_s);
@@ -234,7 +234,7 @@ TEST_F(FolderSweep, ANewControllerTakesJobsOver) {
 }
 
 TEST_F(FolderSweep, CancellingEndsTheFlightsOfTheWorkers) {
-  write_program("sleep 1000");
+  write_program("exec sleep 1000");
   const Sweep two = sweep(kTwoSpeeds);
   control(two);
   JobWorker busy = worker(2);

@@ -254,7 +254,7 @@ TEST(CommandOutput, NamesTheProgramThatIsMissingHangsOrIsKilled) {
   const auto hanging = command_output({"sleep", "1000"}, 0.2);
   ASSERT_FALSE(hanging.ok());
   EXPECT_THAT(hanging.error().message, HasSubstr("sleep: did not end within"));
-  const auto silent = command_output({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 0.3);
+  const auto silent = command_output({"sh", "-c", "exec >&- 2>&-; exec sleep 1000"}, 0.3);
   ASSERT_FALSE(silent.ok());
   EXPECT_THAT(silent.error().message, HasSubstr("sh: did not end within"));
   const auto killed = command_output({"sh", "-c", "kill -9 $$"}, 10.0);
