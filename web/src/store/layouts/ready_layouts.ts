@@ -54,7 +54,7 @@ function fly(area: Area): LayoutNode {
   // As wide as possible for two 4:3 pictures above the table.
   const right_px = clamp((area.height_px - 356) * 0.6667, 324, 620);
   const log_px = Math.max(80, 0.15 * area.height_px);
-  // The launch form scrolls between its head and its buttons; two entries of runs are seen below it.
+  // The launch form scrolls between its head and its buttons; a whole run and the next one are seen below it.
   const launch_px = Math.max(200, Math.min(area.height_px - log_px - 200, 500));
   return split('row', [
     [
