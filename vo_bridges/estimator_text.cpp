@@ -27,11 +27,28 @@ std::size_t utf8_length(std::string_view text) {
   return code < kSmallest[length] || code > 0x10FFFF || surrogate ? 0 : length;
 }
 
+/// Number of bytes of the control sequence of a terminal at the start of `text`, such as a colour
+/// (ECMA-48, 5.4: ESC [, parameters, intermediate bytes, a final byte); 0 if there is none.
+std::size_t control_sequence_length(std::string_view text) {
+  if (!text.starts_with("\x1B[")) return 0;
+  std::size_t end = 2;
+  const auto in = [&](char low, char high) {
+    return end < text.size() && text[end] >= low && text[end] <= high;
+  };
+  while (in('\x30', '\x3F')) ++end;
+  while (in('\x20', '\x2F')) ++end;
+  return in('\x40', '\x7E') ? end + 1 : 0;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t limit) {
   std::string clean;
   while (!text.empty()) {
+    if (const std::size_t control = control_sequence_length(text); control > 0) {
+      text.remove_prefix(control);
+      continue;
+    }
     const std::size_t length = utf8_length(text);
     if (clean.size() + std::max<std::size_t>(length, 1) > limit) break;
     if (length == 0) {

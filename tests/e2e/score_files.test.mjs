@@ -218,6 +218,46 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
     await page.locator('[data-score-group=errors]').click();
   });
 
+  step('leaves a trajectory that has diverged out of the axes, and names it', async () => {
+    const good = estimated({});
+    const burst = (t_s) => {
+      const pose = good(t_s);
+      const factor = Math.exp(Math.max(0, t_s - 1100) / 5);
+      return { ...pose, position: pose.position.map((value) => value * factor) };
+    };
+    await choice(kKitti).locator('[type=checkbox]').uncheck();
+    await page.locator('#score-alignment').selectOption('none');
+    await drop(
+      ['good.tum', tumText(flown(kDuration_s, good))],
+      ['burst.tum', tumText(flown(kDuration_s, burst))],
+    );
+    await cell('file:uploads/burst.tum', 'none', 'position_rmse_m')
+      .filter({ hasText: 'e1' })
+      .waitFor();
+    const beyond = (axis) => page.locator(`.score-page [data-axis=${axis}] .plot-beyond`);
+    const expected = ['position_m', 'along_m', 'across_m', 'up_m'];
+    for (const [group, axes] of [
+      ['errors', expected],
+      ['pose', ['x_m', 'y_m', 'z_m']],
+      ['path', ['xy', 'xz']],
+      ['drift', ['translation_percent']],
+    ]) {
+      await page.locator(`[data-score-group=${group}]`).click();
+      for (const axis of axes) {
+        await beyond(axis)
+          .filter({ hasText: /^uploads.burst.tum leaves the plot$/ })
+          .waitFor();
+      }
+      await dashboard.screenshot(`score_diverged_${group}_1600x900`);
+    }
+    await page.locator('[data-score-group=errors]').click();
+    await choice('file:uploads/burst.tum').locator('[type=checkbox]').uncheck();
+    await beyond('position_m').filter({ hasText: /^$/ }).waitFor({ state: 'attached' });
+    await choice('file:uploads/good.tum').locator('[type=checkbox]').uncheck();
+    await choice(kKitti).locator('[type=checkbox]').check();
+    await page.locator('#score-alignment').selectOption('sim3');
+  });
+
   step('takes a dropped flight log, as an estimate and as the truth', async () => {
     for (const name of [kKitti, kEuroc]) await choice(name).locator('[type=checkbox]').uncheck();
     await drop(['circle.bin', log]);

@@ -13,6 +13,14 @@ TEST(EstimatorText, MakesAnyBytesPrintable) {
   EXPECT_EQ(printable("ab\xC3\xA9", 3), "ab") << "no character is cut in two";
 }
 
+TEST(EstimatorText, HasNoColoursOfATerminal) {
+  EXPECT_EQ(printable("\x1B[0;33m[WARN] lost\x1B[0;0m"), "[WARN] lost");
+  EXPECT_EQ(printable("\x1B[0m"), "");
+  EXPECT_EQ(printable("\x1B[1 qa\x1B[38;5;196"), "a?[38;5;196") << "the last one is incomplete";
+  EXPECT_EQ(printable("\x1B[31mab", 2), "ab") << "they do not count";
+  EXPECT_EQ(printable("\x1B]0;title"), "?]0;title");
+}
+
 TEST(EstimatorText, LimitsNamesToPrintableAsciiWithoutSpaces) {
   for (const char* name : {"n", "inliers", "tracker/levels", "~!"}) {
     EXPECT_TRUE(is_figure_name(name)) << name;

@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr double kLeastWithExponent = 1e6;
+
 Status check_counterparts(const SweepScores& scores, const TableOptions& options) {
   for (const auto& [own, published] : options.counterparts) {
     bool known = false;
@@ -151,13 +153,17 @@ Result<SweepTables> sweep_tables(SweepScores scores, const TableOptions& options
 
 std::string error_number(double value) {
   if (!std::isfinite(value)) return "-";
+  char text[64];
   const double size = std::abs(value);
+  if (size >= kLeastWithExponent) {
+    std::snprintf(text, sizeof text, "%.2e", value);
+    return text;
+  }
   // Decimals that leave three significant digits of what is shown.
   int decimals = 0;
   if (size > 0.0 && size < 99.95) {
     decimals = std::min(9, 2 - static_cast<int>(std::floor(std::log10(size * (1.0 + 5e-4)))));
   }
-  char text[64];
   std::snprintf(text, sizeof text, "%.*f", size == 0.0 ? 0 : decimals, value);
   return text;
 }

@@ -47,7 +47,8 @@ enum class TableFormat { kMarkdown, kLatex, kHtml, kCsv, kJson };
                                     const TableOptions& options,
                                     TableFormat format);
 
-/// Three significant digits, without an exponent: "0.0123", "1.23", "12.3", "1234".
+/// Three significant digits: "0.0123", "1.23", "12.3", "1234"; with an exponent from 1e6 on, where
+/// an estimator has diverged: "2.38e+12".
 [[nodiscard]] std::string error_number(double value);
 
 }  // namespace overfly::server::experiments

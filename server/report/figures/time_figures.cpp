@@ -15,6 +15,7 @@
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/band_plot.hpp"
 #include "server/report/plot/line_plot.hpp"
+#include "server/report/plot/shared_range.hpp"
 #include "server/report/run/words.hpp"
 
 namespace overfly::server::report {
@@ -28,6 +29,20 @@ using plot::Series;
 
 /// Errors whose sizes differ by more than this are drawn on a logarithmic axis.
 constexpr double kLogarithmicFrom = 20.0;
+
+/// Ranges of errors and of heights that count as this large [m].
+constexpr double kLeastErrorRangeM = 0.1;
+constexpr double kLeastHeightRangeM = 2.0;
+
+/// Leaves estimates that have diverged out of the axis. @return what the caption says of them
+std::string leave_out_diverged(LinePlot& plot, double least_m) {
+  plot.unbounded_from = least_m;
+  std::string words;
+  for (const std::string& label : plot::shared_y_range(plot.series, least_m).beyond) {
+    words += " " + label + " has diverged and leaves the plot.";
+  }
+  return words;
+}
 
 /// One line for each entry, of entries that have points.
 std::vector<Series> entry_lines(
@@ -87,9 +102,10 @@ std::string position_figure(const Flight& flight) {
   plot.area_height_px = 220.0;
   plot.logarithmic = logarithmic;
   plot.from_zero = !logarithmic;
+  const std::string diverged = leave_out_diverged(plot, kLeastErrorRangeM);
   return figure("Position error.",
                 std::string("Distance of the estimate from the truth, aligned by ") +
-                    evaluation::to_string(flight.content.alignment) + ".",
+                    evaluation::to_string(flight.content.alignment) + "." + diverged,
                 plot::svg_of(plot));
 }
 
@@ -109,7 +125,8 @@ std::string axis_figure(const Flight& flight,
   if (plot.series.empty()) return "";
   plot.levels = {{0.0, ""}};
   plot.area_height_px = 120.0;
-  return figure(title + ".", caption, plot::svg_of(plot));
+  const std::string diverged = leave_out_diverged(plot, kLeastErrorRangeM);
+  return figure(title + ".", caption + diverged, plot::svg_of(plot));
 }
 
 std::string rotation_figure(const Flight& flight) {
@@ -162,7 +179,9 @@ std::string pose_figure(const Flight& flight, const PoseQuantity& quantity) {
   LinePlot plot =
       time_plot(flight, quantity.name, quantity.title, quantity.y_label, std::move(series));
   plot.area_height_px = 120.0;
-  return figure(std::string(quantity.title) + ".", quantity.caption, plot::svg_of(plot));
+  std::string caption = quantity.caption;
+  if (!quantity.attitude) caption += leave_out_diverged(plot, kLeastHeightRangeM);
+  return figure(std::string(quantity.title) + ".", caption, plot::svg_of(plot));
 }
 
 std::string pose_figures(const Flight& flight) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/report/plot/markup.hpp"
+#include "server/report/plot/shared_range.hpp"
 #include "server/report/plot/svg_parts.hpp"
 
 namespace overfly::server::plot {
@@ -65,7 +66,8 @@ std::vector<Series> drawn_series(const LinePlot& plot) {
 
 Range y_range_for(const LinePlot& plot, const std::vector<Series>& series) {
   if (plot.y_range) return usable(*plot.y_range);
-  Range range = y_range_of(series);
+  Range range =
+      plot.unbounded_from ? shared_y_range(series, *plot.unbounded_from).range : y_range_of(series);
   for (const Level& level : plot.levels) {
     range.low = std::min(range.low, level.value);
     range.high = std::max(range.high, level.value);

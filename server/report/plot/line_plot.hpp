@@ -36,6 +36,9 @@ struct LinePlot {
   double width_px = 900.0;
   double area_height_px = 170.0;  ///< between the axes
   bool from_zero = false;         ///< the y axis begins at 0
+  /// An estimate that diverges reaches any value: ranges of y leave it out (shared_y_range). Ranges
+  /// below this one count as this large.
+  std::optional<double> unbounded_from;
   /// y, over at most five powers of ten. Values that are not positive become gaps.
   bool logarithmic = false;
   bool legend = true;

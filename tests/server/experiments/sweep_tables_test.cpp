@@ -348,6 +348,9 @@ TEST(ErrorNumber, HasThreeSignificantDigits) {
   EXPECT_EQ(error_number(99.96), "100");
   EXPECT_EQ(error_number(1234.5), "1234");
   EXPECT_EQ(error_number(-0.5), "-0.500");
+  EXPECT_EQ(error_number(999999.0), "999999");
+  EXPECT_EQ(error_number(2381716801126.0), "2.38e+12");
+  EXPECT_EQ(error_number(-1e300), "-1.00e+300");
 }
 
 }  // namespace

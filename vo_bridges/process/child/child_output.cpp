@@ -45,7 +45,7 @@ void ChildOutput::wait_for_taker(std::string line) {
 
 void ChildOutput::end_line() {
   if (!partial_.empty() && partial_.back() == '\r') partial_.pop_back();
-  if (!partial_.empty()) keep(printable(partial_));
+  if (std::string line = printable(partial_); !line.empty()) keep(std::move(line));
   partial_.clear();
 }
 

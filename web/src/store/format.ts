@@ -7,10 +7,16 @@ export function numberOf(value: unknown): number | null {
   return typeof value === 'number' ? value : null;
 }
 
+/** From here on with an exponent: errors of an estimator that has diverged have hundreds of digits. */
+const kLeastWithExponent = 1e10;
+
 /** Fixed digits with a true minus sign; an en dash for a missing value. */
 export function formatNumber(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNothing;
-  const text = value.toFixed(digits);
+  const text =
+    Math.abs(value) < kLeastWithExponent
+      ? value.toFixed(digits)
+      : value.toExponential(2).replace('e+', 'e');
   return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
 }
 

@@ -6,6 +6,8 @@ describe('formatting', () => {
     expect(formatNumber(3.14159, 2)).toBe('3.14');
     expect(formatNumber(-1, 1)).toBe('−1.0');
     expect(formatNumber(-0.001, 1)).toBe('0.0');
+    expect(formatNumber(2381716801126.4, 2)).toBe('2.38e12');
+    expect(formatNumber(-1e300, 0)).toBe('−1.00e300');
     expect(formatNumber(null, 1)).toBe('–');
     expect(formatNumber(NaN, 1)).toBe('–');
   });

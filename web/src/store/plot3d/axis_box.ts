@@ -1,5 +1,6 @@
 // The axes of the 3D plot: a box with round numbers around all tracks, and its ticks.
 import { niceStep } from '../plots/path_frame';
+import { sharedExtent } from '../plots/shared_extent';
 
 /** East, north, up [m]. */
 export type Point3 = readonly [number, number, number];
@@ -35,12 +36,18 @@ export function enclosed(box: Box3 | null, [x, y, z]: Point3): Box3 {
   };
 }
 
-/** Encloses all boxes; null without any. */
-export function boxOfAll(boxes: readonly (Box3 | null)[]): Box3 | null {
-  return boxes.reduce(
-    (all, box) => (box === null ? all : enclosed(enclosed(all, box.min), box.max)),
-    null,
+/** Encloses all tracks but those that have diverged (`beyond`: their places); null without any point. */
+export function boxOfAll(
+  tracks: readonly { box: Box3 | null; estimate: boolean }[],
+): { box: Box3; beyond: number[] } | null {
+  const extents = tracks.map(({ box, estimate }) =>
+    box === null ? null : { low: box.min, high: box.max, estimate },
   );
+  const shared = sharedExtent(extents, kLeast_m);
+  if (shared === null) return null;
+  const [x0 = 0, y0 = 0, z0 = 0] = shared.low;
+  const [x1 = 0, y1 = 0, z1 = 0] = shared.high;
+  return { box: { min: [x0, y0, z0], max: [x1, y1, z1] }, beyond: shared.beyond };
 }
 
 /**

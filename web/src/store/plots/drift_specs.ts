@@ -5,6 +5,8 @@ import { shownAlignment } from '../state';
 import { drawnTracks } from '../tracks';
 import type { CurveHue } from './plot_specs';
 import { hueOf } from './plot_specs';
+import type { SharedExtent } from './shared_extent';
+import { sharedExtent } from './shared_extent';
 
 export interface DriftCurve {
   name: string;
@@ -45,6 +47,16 @@ const kFigures = [
     least: 0.01,
   },
 ] as const;
+
+/** Of the values of all curves but those of estimates that have diverged; null without values. */
+export function driftExtent({ curves, least }: DriftSpec): SharedExtent | null {
+  const extents = curves.map(({ values }) =>
+    values.length === 0
+      ? null
+      : { low: [Math.min(...values)], high: [Math.max(...values)], estimate: true },
+  );
+  return sharedExtent(extents, least);
+}
 
 /** The relative errors of an estimate, by ascending length. */
 export interface ScoredDrift {

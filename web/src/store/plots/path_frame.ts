@@ -1,6 +1,8 @@
 // The part of the ground plane or of a vertical plane that a path plot shows: equal scales on both
 // axes, so that a circle is a circle.
 import type { CurveHue } from './plot_specs';
+import type { Extent, SharedExtent } from './shared_extent';
+import { sharedExtent } from './shared_extent';
 
 /** A track as it is drawn. */
 export interface Path {
@@ -21,11 +23,6 @@ export interface PathMark {
   y: number;
 }
 
-export interface Box {
-  min: [number, number];
-  max: [number, number];
-}
-
 export interface Size {
   width_px: number;
   height_px: number;
@@ -40,14 +37,20 @@ export interface PathFrame {
 
 const kMargin = 1.12;
 const kLeast_m = 2;
+const kLeastStepWithExponent = 1e4;
 const kScaleRange_m = [1e-4, 1e5] as const;
 
-/** Shows all of the box. */
-export function fitted({ min, max }: Box, { width_px, height_px }: Size): PathFrame {
-  const width_m = Math.max(kLeast_m, max[0] - min[0]) * kMargin;
-  const height_m = Math.max(kLeast_m, max[1] - min[1]) * kMargin;
+/** Shows all from the least to the greatest x and y; the origin if there is nothing. */
+export function fitted(
+  box: Pick<SharedExtent, 'low' | 'high'> | null,
+  { width_px, height_px }: Size,
+): PathFrame {
+  const [left = 0, bottom = 0] = box?.low ?? [];
+  const [right = 0, top = 0] = box?.high ?? [];
+  const width_m = Math.max(kLeast_m, right - left) * kMargin;
+  const height_m = Math.max(kLeast_m, top - bottom) * kMargin;
   return {
-    centre_m: [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2],
+    centre_m: [(left + right) / 2, (bottom + top) / 2],
     m_per_px: Math.max(width_m / Math.max(1, width_px), height_m / Math.max(1, height_px)),
   };
 }
@@ -110,29 +113,38 @@ export function ticks(low: number, high: number, most: number): number[] {
   return Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
 }
 
-/** A tick's number with the digits of its step. */
+/** A tick's number with the digits of its step; with an exponent where they are many: "1.5e12". */
 export function tickText(value: number, step: number): string {
-  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  const text = value.toFixed(Math.min(6, digits));
+  const power = Math.floor(Math.log10(step) + 1e-9);
+  const mantissa = step / 10 ** power;
+  /** Of the step's last digit: a step may be 2.5 times a power of ten. */
+  const last = Math.abs(mantissa - Math.round(mantissa)) < 1e-6 ? power : power - 1;
+  if (step >= kLeastStepWithExponent && value !== 0) {
+    const first = Math.floor(Math.log10(Math.abs(value)) + 1e-9);
+    const digits = Math.max(0, first - last);
+    return value.toExponential(digits).replace('e+', 'e').replace('-', '−');
+  }
+  const text = value.toFixed(Math.min(6, Math.max(0, -last)));
   return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
 }
 
-/** Encloses all finite points; null without any. */
-export function boxOf(
-  paths: readonly { x: ArrayLike<number>; y: ArrayLike<number> }[],
-): Box | null {
-  const min: [number, number] = [Infinity, Infinity];
-  const max: [number, number] = [-Infinity, -Infinity];
-  for (const { x, y } of paths) {
-    for (let i = 0; i < x.length; i += 1) {
-      const px = x[i] ?? NaN;
-      const py = y[i] ?? NaN;
-      if (!Number.isFinite(px) || !Number.isFinite(py)) continue;
-      min[0] = Math.min(min[0], px);
-      min[1] = Math.min(min[1], py);
-      max[0] = Math.max(max[0], px);
-      max[1] = Math.max(max[1], py);
-    }
+/** Encloses all tracks but those that have diverged; null without any point. */
+export function boxOf(paths: readonly Pick<Path, 'hue' | 'x' | 'y'>[]): SharedExtent | null {
+  return sharedExtent(paths.map(extentOf), kLeast_m);
+}
+
+/** Of all finite points. */
+function extentOf({ hue, x, y }: Pick<Path, 'hue' | 'x' | 'y'>): Extent | null {
+  const low: [number, number] = [Infinity, Infinity];
+  const high: [number, number] = [-Infinity, -Infinity];
+  for (let i = 0; i < x.length; i += 1) {
+    const px = x[i] ?? NaN;
+    const py = y[i] ?? NaN;
+    if (!Number.isFinite(px) || !Number.isFinite(py)) continue;
+    low[0] = Math.min(low[0], px);
+    low[1] = Math.min(low[1], py);
+    high[0] = Math.max(high[0], px);
+    high[1] = Math.max(high[1], py);
   }
-  return min[0] > max[0] ? null : { min, max };
+  return low[0] > high[0] ? null : { low, high, estimate: hue.kind === 'estimate' };
 }

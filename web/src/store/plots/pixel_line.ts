@@ -20,6 +20,8 @@ export interface LineSink {
 
 /** A point that is left out is nearer than this to the line that is drawn. */
 const kTolerance_px = 0.2;
+/** From the top of the plot: a canvas does not draw lines to any distance. */
+const kFarthest_px = 1e5;
 
 /**
  * Draws a curve and leaves out points that would not change the picture: every line begins at the
@@ -41,7 +43,8 @@ export function traceLine({ t_s, values }: Polyline, scale: PixelScale, sink: Li
       continue;
     }
     const x = left + ((t_s[i] ?? 0) - begin_s) * px_per_s;
-    const y = top + (greatest - value) * px_per_unit;
+    const below_px = (greatest - value) * px_per_unit;
+    const y = top + Math.min(kFarthest_px, Math.max(-kFarthest_px, below_px));
     if (!drawing) {
       sink.moveTo(x, y);
       drawing = true;

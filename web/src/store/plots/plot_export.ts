@@ -4,6 +4,7 @@ import { decimated } from './curve';
 import { ticks, tickText } from './path_frame';
 import type { CurveHue, PlotSpec } from './plot_specs';
 import { paddedRange } from './plot_range';
+import { beyondText, curveExtent, sharedExtent } from './shared_extent';
 import { escaped, svgFile } from './svg_pen';
 import type { Span } from '../time_window';
 
@@ -70,15 +71,15 @@ function onePlot(spec: PlotSpec, span_s: Span, style: SvgStyle): string {
     const now = curve();
     return now === null ? { t_s: [], values: [] } : decimated(now, span_s, plotWidth * 2);
   });
-  const shown = lines.flatMap(({ t_s, values }) =>
-    values.filter((_, i) => (t_s[i] ?? NaN) >= span_s[0] && (t_s[i] ?? NaN) <= span_s[1]),
+  const extents = lines.map((line, i) =>
+    curveExtent(line, span_s, spec.unbounded === true && spec.curves[i]?.hue.kind === 'estimate'),
   );
-  const known = shown.filter((value) => !Number.isNaN(value));
-  const extremes = known.reduce<[number, number]>(
-    ([low, high], value) => [Math.min(low, value), Math.max(high, value)],
-    [Infinity, -Infinity],
+  const shared = sharedExtent(extents, spec.least);
+  const [low, high] = paddedRange(
+    shared?.low[0] ?? Infinity,
+    shared?.high[0] ?? -Infinity,
+    spec.least,
   );
-  const [low, high] = paddedRange(...extremes, spec.least);
   const x = (t_s: number) => kLeft_px + ((t_s - span_s[0]) / (span_s[1] - span_s[0])) * plotWidth;
   const y = (value: number) => kTop_px + (1 - (value - low) / (high - low)) * plotHeight;
   const paths = lines.map(({ t_s, values }, i) => {
@@ -96,7 +97,7 @@ function onePlot(spec: PlotSpec, span_s: Span, style: SvgStyle): string {
   });
   const area = { x, y, low, high, plotWidth, plotHeight };
   const clip = `<svg x="${kLeft_px}" y="${kTop_px}" width="${plotWidth}" height="${plotHeight}" viewBox="${kLeft_px} ${kTop_px} ${plotWidth} ${plotHeight}">${paths.join('')}</svg>`;
-  return titles(spec, style) + axes(span_s, area, style) + clip;
+  return titles(spec, shared?.beyond ?? [], style) + axes(span_s, area, style) + clip;
 }
 
 interface Area {
@@ -108,8 +109,15 @@ interface Area {
   plotHeight: number;
 }
 
-function titles({ label, unit, curves }: PlotSpec, style: SvgStyle): string {
-  const names = curves.map(({ name, hue }) => ({ name, colour: style.curve(hue).colour }));
+function titles(
+  { label, unit, curves }: PlotSpec,
+  beyond: readonly number[],
+  style: SvgStyle,
+): string {
+  const names = curves.map(({ name, hue }, i) => ({
+    name: beyond.includes(i) ? beyondText(name) : name,
+    colour: style.curve(hue).colour,
+  }));
   return svgTitles(kLeft_px, unit === '' ? label : `${label} [${unit}]`, names, style.text);
 }
 

@@ -48,6 +48,8 @@ export interface PlotSpec {
   least: number;
   /** Counts from 0 on; there is no plot before it has counted something. */
   counts?: true;
+  /** An estimate that diverges reaches any value: the axis leaves it out. */
+  unbounded?: boolean;
   /** Lower limit of good values, drawn as a dashed line. */
   limit?: number;
   curves: CurveSpec[];
@@ -81,17 +83,39 @@ const kKnown: Readonly<Record<string, Partial<PlotSpec>>> = {
   saturated_fraction: { digits: 1, least: 2 },
   void_fraction: { digits: 1, least: 2 },
   gain: { digits: 2, least: 0.5 },
-  error_m: { digits: 3, least: 0.1, hint: 'Distance between the estimated and the true position' },
-  error_along_m: { digits: 3, least: 0.1, hint: 'In the direction of the true motion' },
-  error_across_m: { digits: 3, least: 0.1, hint: 'To the right of the true motion' },
-  error_up_m: { digits: 3, least: 0.1, hint: 'Estimated height minus the true one' },
+  error_m: {
+    unbounded: true,
+    digits: 3,
+    least: 0.1,
+    hint: 'Distance between the estimated and the true position',
+  },
+  error_along_m: {
+    unbounded: true,
+    digits: 3,
+    least: 0.1,
+    hint: 'In the direction of the true motion',
+  },
+  error_across_m: {
+    unbounded: true,
+    digits: 3,
+    least: 0.1,
+    hint: 'To the right of the true motion',
+  },
+  error_up_m: {
+    unbounded: true,
+    digits: 3,
+    least: 0.1,
+    hint: 'Estimated height minus the true one',
+  },
   error_rotation_deg: { digits: 3, least: 0.1, hint: 'Angle between the two attitudes' },
   error_scale_percent: {
+    unbounded: true,
     digits: 3,
     least: 0.1,
     hint: 'Estimated distance over the last 100 m against the true one: drift of the scale',
   },
   error_relative_percent: {
+    unbounded: true,
     digits: 3,
     least: 0.1,
     hint: 'Position error over the last 100 m of the path, in % of them',
@@ -162,6 +186,7 @@ function poseSpecs(state: State): PlotSpec[] {
       unit: angle ? 'deg' : 'm',
       digits: angle ? 2 : 1,
       least: angle ? 4 : 2,
+      unbounded: !angle,
       curves: tracks.map((track) => ({
         name: track.label,
         short: track.letter,

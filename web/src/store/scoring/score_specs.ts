@@ -133,7 +133,8 @@ export function scoreSpan({ truth }: Evaluation): Span {
 }
 
 function plot(key: string, label: string, unit: string, digits: number, curves: CurveSpec[]) {
-  return { key, label, unit, digits, least: unit === 'deg' ? 0.5 : 0.1, curves };
+  const angle = unit === 'deg';
+  return { key, label, unit, digits, least: angle ? 0.5 : 0.1, unbounded: !angle, curves };
 }
 
 function spec(

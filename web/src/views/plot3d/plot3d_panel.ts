@@ -27,6 +27,8 @@ import { steerPlot } from './plot3d_steering';
 import { plot3dTools } from './plot3d_tools';
 import { Plot3dView } from './plot3d_view';
 import { HoverNote } from './hover_note';
+import { hueOf } from '../../store/plots/plot_specs';
+import { BeyondNote } from '../plots/beyond_note';
 import { rgbOf } from './rgb';
 import { ShownTracks } from './shown_tracks';
 
@@ -48,6 +50,7 @@ export class Plot3dPanel implements View {
   private readonly marks = h('canvas', { 'aria-hidden': 'true' });
   private readonly legend = h('div', { class: 'legend' });
   private readonly note = new HoverNote();
+  private readonly beyond = new BeyondNote();
   private readonly area = h('div', { class: 'plot3d-area', tabindex: 0, role: 'img' });
   private readonly stage: LineStage | null;
   private readonly tracks: ShownTracks | null;
@@ -64,6 +67,7 @@ export class Plot3dPanel implements View {
     this.stage = LineStage.open(this.lines);
     this.tracks = this.stage === null ? null : new ShownTracks(this.stage);
     this.area.append(this.grid, this.lines, this.marks, this.legend, ...this.note.parts);
+    this.area.append(this.beyond.root);
     this.panel.body.prepend(this.area);
     this.panel.tools.append(
       saveMenu(
@@ -104,10 +108,15 @@ export class Plot3dPanel implements View {
     if (runs !== this.runs) this.view.fit();
     this.runs = runs;
     this.tracks?.take(state);
-    const box = boxOfAll((this.tracks?.all ?? []).map(({ points }) => points.box));
-    if (box !== null && this.view.setBox(box)) this.note.hide();
-    this.panel.showEmpty(this.emptyText(state, box !== null));
-    this.area.hidden = this.stage === null || this.lost || box === null;
+    const shown = this.tracks?.all ?? [];
+    const all = boxOfAll(
+      shown.map(({ track, points }) => ({ box: points.box, estimate: track.name !== '' })),
+    );
+    if (all !== null && this.view.setBox(all.box)) this.note.hide();
+    const beyond = shown.filter((_, i) => all?.beyond.includes(i));
+    this.beyond.show(beyond.map(({ track }) => ({ name: track.label, hue: hueOf(track) })));
+    this.panel.showEmpty(this.emptyText(state, all !== null));
+    this.area.hidden = this.stage === null || this.lost || all === null;
     this.describe(state);
   }
 

@@ -1,13 +1,16 @@
 // One figure of the score over the length of sub-paths: a line with points for each estimate.
 import { formatNumber } from '../../store/format';
 import type { DriftSpec } from '../../store/plots/drift_specs';
-import { driftAt, nearestLength } from '../../store/plots/drift_specs';
+import { driftAt, driftExtent, nearestLength } from '../../store/plots/drift_specs';
 import type { Size } from '../../store/plots/path_frame';
 import { ticks, tickText } from '../../store/plots/path_frame';
+import type { SharedExtent } from '../../store/plots/shared_extent';
+import { beyondText } from '../../store/plots/shared_extent';
 import type { Pen } from '../../store/plots/svg_pen';
 import { curveStyle } from '../colours';
 import { h, perFrame, setAttribute } from '../dom';
 import { paint } from '../paint';
+import { BeyondNote } from './beyond_note';
 import type { Drawing } from './plot_canvas';
 import { PlotCanvas } from './plot_canvas';
 import { plotTip } from './plot_tip';
@@ -28,7 +31,12 @@ export class DriftPlot {
     height_px: 2 * kBottom_px,
   });
 
+  private readonly beyond = new BeyondNote();
+  private shared: SharedExtent | null;
+
   constructor(private spec: DriftSpec) {
+    this.shared = driftExtent(spec);
+    this.plot.area.append(this.beyond.root);
     const { key, label, unit, hint } = spec;
     this.root = h(
       'div',
@@ -49,6 +57,8 @@ export class DriftPlot {
   /** Takes the figures as they are now. */
   draw(spec: DriftSpec): void {
     this.spec = spec;
+    this.shared = driftExtent(spec);
+    this.beyond.show(spec.curves.filter((_, i) => this.shared?.beyond.includes(i)));
     const { label, unit, digits, curves } = spec;
     const words = curves.map(({ name, lengths_m, values }) => {
       const figures = lengths_m.map((m, i) => `${formatNumber(values[i], digits)} at ${m} m`);
@@ -65,7 +75,11 @@ export class DriftPlot {
   /** As it is shown, drawn into a file. */
   drawing(): Drawing {
     const { label, unit, curves } = this.spec;
-    return this.plot.drawing(kLeft_px, `${label} [${unit}]`, curves);
+    const names = curves.map(({ name, hue }, i) => ({
+      name: this.shared?.beyond.includes(i) === true ? beyondText(name) : name,
+      hue,
+    }));
+    return this.plot.drawing(kLeft_px, `${label} [${unit}]`, names);
   }
 
   /** The greatest length and value of the axes, which begin at zero. */
@@ -73,7 +87,7 @@ export class DriftPlot {
     const { curves, least } = this.spec;
     return {
       length_m: kMargin * Math.max(1, ...curves.flatMap(({ lengths_m }) => lengths_m)),
-      value: kMargin * Math.max(least, ...curves.flatMap(({ values }) => values)),
+      value: kMargin * Math.max(least, this.shared?.high[0] ?? 0),
     };
   }
 

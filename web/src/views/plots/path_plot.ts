@@ -1,7 +1,7 @@
 // Tracks seen from above or from the side, with equal scales in metres. The wheel zooms, dragging
 // moves, a double click shows everything again, a click seeks.
 import type { Axis } from '../../store/run_data';
-import type { Box, Path, PathFrame, PathMark, Size } from '../../store/plots/path_frame';
+import type { Path, PathFrame, PathMark, Size } from '../../store/plots/path_frame';
 import {
   boxOf,
   fitted,
@@ -14,10 +14,12 @@ import {
 import type { Pen } from '../../store/plots/svg_pen';
 import type { State } from '../../store/state';
 import { hueOf } from '../../store/plots/plot_specs';
+import { beyondText } from '../../store/plots/shared_extent';
 import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
 import { curveStyle } from '../colours';
 import { h, setText } from '../dom';
 import { paint } from '../paint';
+import { BeyondNote } from './beyond_note';
 import type { Drawing } from './plot_canvas';
 import { PlotCanvas } from './plot_canvas';
 
@@ -49,7 +51,9 @@ export class PathPlot {
     height_px: 20,
   });
   private readonly readout = h('span', { class: 'readout' });
+  private readonly beyond = new BeyondNote();
   private paths: readonly Path[] = [];
+  private box: ReturnType<typeof boxOf> = null;
   private marks: readonly PathMark[] = [];
   /** null = everything. */
   private chosen: PathFrame | null = null;
@@ -60,6 +64,7 @@ export class PathPlot {
     private readonly onSeek: (t_s: number) => void,
   ) {
     const { key, label, hint } = axes;
+    this.plot.area.append(this.beyond.root);
     this.plot.canvas.setAttribute('aria-label', `Tracks ${label.toLowerCase()}`);
     this.root = h(
       'div',
@@ -94,7 +99,11 @@ export class PathPlot {
   }
 
   show(paths: readonly Path[], marks: readonly PathMark[]): void {
-    this.paths = paths;
+    if (paths !== this.paths) {
+      this.paths = paths;
+      this.box = boxOf(paths);
+      this.beyond.show(paths.filter((_, i) => this.box?.beyond.includes(i)));
+    }
     this.marks = marks;
     this.repaint();
   }
@@ -113,18 +122,18 @@ export class PathPlot {
     this.plot.repaint();
   }
 
-  private box(): Box {
-    return boxOf(this.paths) ?? { min: [0, 0], max: [0, 0] };
-  }
-
   private frame(): PathFrame {
-    return this.chosen ?? fitted(this.box(), this.plot.size());
+    return this.chosen ?? fitted(this.box, this.plot.size());
   }
 
   /** As it is shown, drawn into a file: its title, names and tracks. */
   drawing(): Drawing {
     const { label, hint } = this.axes;
-    return this.plot.drawing(8, `${label}: ${hint} [m]`, this.paths);
+    const names = this.paths.map(({ name, hue }, i) => ({
+      name: this.box?.beyond.includes(i) === true ? beyondText(name) : name,
+      hue,
+    }));
+    return this.plot.drawing(8, `${label}: ${hint} [m]`, names);
   }
 
   private paintAll(pen: Pen, size: Size): void {

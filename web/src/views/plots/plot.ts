@@ -7,10 +7,13 @@ import { formatNumber, formatTime } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { valueAt } from '../../store/plots/curve';
 import { CurveWindow } from '../../store/plots/curve_window';
+import { tickText } from '../../store/plots/path_frame';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
+import { curveExtent, sharedExtent } from '../../store/plots/shared_extent';
 import { spanAt, stateName } from '../../store/state_spans';
 import type { Span } from '../../store/time_window';
+import { BeyondNote } from './beyond_note';
 import { paintCurves } from './curve_painter';
 import { plotTip } from './plot_tip';
 import { paintStateLane } from '../state_lanes';
@@ -70,6 +73,7 @@ export class Plot {
   private readonly plot: uPlot;
   private readonly area = h('div', { class: 'plot-area' });
   private readonly cursor = h('div', { class: 'plot-cursor' });
+  private readonly beyond = new BeyondNote();
   private readonly readouts: HTMLElement[];
   private lines: Polyline[] = [];
   private readonly windows: readonly CurveWindow[];
@@ -100,21 +104,26 @@ export class Plot {
     );
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);
     this.plot = new uPlot(this.uplotOptions(timeLabels, leads), axesData([0, 1]), this.area);
-    this.plot.over.append(this.cursor);
+    this.plot.over.append(this.cursor, this.beyond.root);
     this.steer(this.plot.over);
     new ResizeObserver(() => this.fit()).observe(this.area);
   }
 
   /** Draws the curves as they are now in a span of time. */
   draw(span_s: Span): void {
-    const { curves, least } = this.spec;
+    const { curves, least, unbounded } = this.spec;
     const pixels = Math.max(100, plotWidth_px(this.plot));
     this.span_s = span_s;
     this.lines = curves.map(({ curve }, i) => {
       const now = curve();
       return now === null ? kNoLine : (this.windows[i]?.at(now, span_s, pixels) ?? kNoLine);
     });
-    this.range = paddedRange(...this.extremes(), least);
+    const extents = this.lines.map((line, i) =>
+      curveExtent(line, span_s, unbounded === true && curves[i]?.hue.kind === 'estimate'),
+    );
+    const shared = sharedExtent(extents, least);
+    this.range = paddedRange(shared?.low[0] ?? Infinity, shared?.high[0] ?? -Infinity, least);
+    this.beyond.show(curves.filter((_, i) => shared?.beyond.includes(i)));
     this.plot.setData(axesData(span_s), true);
   }
 
@@ -163,23 +172,6 @@ export class Plot {
       const short = curves[i]?.short ?? '';
       setText(readout, short === '' ? value : `${short} ${value}`);
     });
-  }
-
-  /** The smallest and the largest value in the span. */
-  private extremes(): [number, number] {
-    let low = Infinity;
-    let high = -Infinity;
-    const [begin_s, end_s] = this.span_s;
-    for (const { t_s, values } of this.lines) {
-      for (let i = 0; i < t_s.length; i += 1) {
-        const t = t_s[i] ?? NaN;
-        const value = values[i] ?? NaN;
-        if (t < begin_s || t > end_s) continue;
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
-    return [low, high];
   }
 
   private paintCurves({ ctx, bbox }: uPlot): void {
@@ -321,7 +313,14 @@ export class Plot {
         timeLabels
           ? { ...axis, size: 20 + lanes, gap: 2 + lanes, ticks: { show: false }, space: 44 }
           : { ...axis, size: lanes, ticks: { show: false }, values: () => [], space: 44 },
-        { ...axis, size: 40, gap: 3, ticks: { show: false }, space: 20 },
+        {
+          ...axis,
+          size: 40,
+          gap: 3,
+          ticks: { show: false },
+          space: 20,
+          values: (_, splits, _axis, _space, step) => splits.map((value) => tickText(value, step)),
+        },
       ],
       // uPlot draws the axes; the curves are drawn over them.
       series: [{}, { paths: () => null, points: { show: false } }],

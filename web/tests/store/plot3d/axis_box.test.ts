@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+import type { Box3 } from '../../../src/store/plot3d/axis_box';
 import { axisScales, boxOfAll, boxOfScales } from '../../../src/store/plot3d/axis_box';
 
 describe('the axes of the 3D plot', () => {
@@ -36,15 +37,19 @@ describe('the axes of the 3D plot', () => {
     }
   });
 
-  it('enclose all boxes', () => {
-    const a = { min: [0, 0, 0], max: [1, 1, 1] } as const;
-    const b = { min: [-5, 0.5, 0], max: [0, 9, 0] } as const;
-    const boxes = [a, null, b].map((box) => box && { min: [...box.min], max: [...box.max] });
-    expect(boxOfAll(boxes as Parameters<typeof boxOfAll>[0])).toEqual({
-      min: [-5, 0, 0],
-      max: [1, 9, 1],
-    });
-    expect(boxOfAll([null])).toBeNull();
+  it('enclose all tracks but those that have diverged', () => {
+    const truth: Box3 = { min: [0, 0, 0], max: [1, 1, 1] };
+    const near: Box3 = { min: [-5, 0.5, 0], max: [0, 9, 0] };
+    const far: Box3 = { min: [0, 0, -4e12], max: [1, 1, 0] };
+    const tracks = [
+      { box: truth, estimate: false },
+      { box: far, estimate: true },
+      { box: null, estimate: true },
+      { box: near, estimate: true },
+    ];
+    expect(boxOfAll(tracks)).toEqual({ box: { min: [-5, 0, 0], max: [1, 9, 1] }, beyond: [1] });
+    expect(boxOfAll(tracks.slice(1, 3))).toEqual({ box: far, beyond: [] });
+    expect(boxOfAll([{ box: null, estimate: true }])).toBeNull();
     const box = { min: [0, 0, 0], max: [100, 100, 50] } as Parameters<typeof axisScales>[0];
     expect(boxOfScales(axisScales(box, 1))).toEqual(box);
   });

@@ -1,5 +1,11 @@
 import { describe, expect, it } from 'vitest';
-import { driftAt, driftCsv, driftSpecs, nearestLength } from '../../../src/store/plots/drift_specs';
+import {
+  driftAt,
+  driftCsv,
+  driftExtent,
+  driftSpecs,
+  nearestLength,
+} from '../../../src/store/plots/drift_specs';
 import { Viewing } from '../../support/viewing';
 
 function scored(): Viewing {
@@ -38,6 +44,18 @@ describe('driftSpecs', () => {
     const flying = new Viewing();
     flying.watch();
     expect(driftSpecs(flying.store.state)).toEqual([]);
+  });
+});
+
+describe('driftExtent', () => {
+  const hue = { kind: 'estimate', colour: 0 } as const;
+  const of = (...values: number[]) => ({ name: 'a', hue, lengths_m: [100], values, pairs: [1] });
+  const spec = { key: '', label: '', unit: '', hint: '', digits: 3, least: 0.1 };
+
+  it('leaves out an estimate that has diverged', () => {
+    const curves = [of(4e11, 1e11), of(), of(0.1), of(2, 1)];
+    expect(driftExtent({ ...spec, curves })).toMatchObject({ high: [2], beyond: [0] });
+    expect(driftExtent({ ...spec, curves: [] })).toBeNull();
   });
 });
 

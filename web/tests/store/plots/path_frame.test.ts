@@ -13,7 +13,7 @@ const size = { width_px: 400, height_px: 200 };
 
 describe('a path frame', () => {
   it('shows the whole box with equal scales', () => {
-    const frame = fitted({ min: [0, -100], max: [100, 300] }, size);
+    const frame = fitted({ low: [0, -100], high: [100, 300] }, size);
     expect(frame.centre_m).toEqual([50, 100]);
     expect(frame.m_per_px).toBeCloseTo((400 * 1.12) / 200);
     const [, top] = toPixels(frame, size, [0, 300]);
@@ -24,7 +24,7 @@ describe('a path frame', () => {
   });
 
   it('is not empty for a standing aircraft', () => {
-    expect(fitted({ min: [5, 5], max: [5, 5] }, size).m_per_px).toBeGreaterThan(0);
+    expect(fitted({ low: [5, 5], high: [5, 5] }, size).m_per_px).toBeGreaterThan(0);
   });
 
   it('goes to pixels and back', () => {
@@ -60,13 +60,33 @@ describe('ticks', () => {
     expect(tickText(0.2 * 3, 0.2)).toBe('0.6');
     expect(tickText(-50, 50)).toBe('−50');
     expect(tickText(-1e-12, 0.5)).toBe('0.0');
+    expect(tickText(12000, 2000)).toBe('12000');
+    expect(tickText(-1.5e12, 5e11)).toBe('−1.5e12');
+    expect(tickText(120000, 10000)).toBe('1.2e5');
+    expect(tickText(1e6, 2e5)).toBe('1.0e6');
+    expect(tickText(0, 1e5)).toBe('0');
+    expect(tickText(12.5, 2.5)).toBe('12.5');
+    expect(tickText(0.75, 0.25)).toBe('0.75');
+    expect(tickText(1.25e6, 2.5e5)).toBe('1.25e6');
   });
 });
 
 describe('boxOf', () => {
+  const truth = { hue: { kind: 'truth', order: 0 } as const, x: [0, 100], y: [0, 50] };
+
   it('leaves out what is not known', () => {
-    expect(boxOf([{ x: [1, NaN, 3], y: [4, 5, -6] }])).toEqual({ min: [1, -6], max: [3, 4] });
-    expect(boxOf([{ x: [NaN], y: [1] }])).toBeNull();
+    const { hue } = truth;
+    expect(boxOf([{ hue, x: [1, NaN, 3], y: [4, 5, -6] }])).toMatchObject({
+      low: [1, -6],
+      high: [3, 4],
+    });
+    expect(boxOf([{ hue, x: [NaN], y: [1] }])).toBeNull();
     expect(boxOf([])).toBeNull();
+  });
+
+  it('leaves out an estimate that has diverged', () => {
+    const diverged = { hue: { kind: 'estimate', colour: 0 } as const, x: [0, 1], y: [0, -2e12] };
+    expect(boxOf([diverged, truth])).toEqual({ low: [0, 0], high: [100, 50], beyond: [0] });
+    expect(boxOf([diverged])).toEqual({ low: [0, -2e12], high: [1, 0], beyond: [] });
   });
 });

@@ -31,6 +31,13 @@ describe('traceLine', () => {
     expect(traced({ t_s: [5, 6], values: [3, 1] }).points.at(-1)).toEqual([110, 100]);
   });
 
+  it('places what a canvas cannot draw far outside of the plot', () => {
+    const { points } = traced({ t_s: [5, 6, 7], values: [3, -2e12, 3e300] });
+    expect(points.map(([, y]) => Math.abs(y) <= 100020)).toEqual([true, true, true]);
+    expect(points[1]?.[1]).toBeGreaterThan(1e4);
+    expect(points[2]?.[1]).toBeLessThan(-1e4);
+  });
+
   it('draws a straight line by its ends', () => {
     const t_s = Array.from({ length: 1000 }, (_, i) => 5 + i / 100);
     expect(traced({ t_s, values: t_s.map((t) => 2 * t) }).points.length).toBeLessThanOrEqual(3);

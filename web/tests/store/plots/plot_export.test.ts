@@ -47,6 +47,24 @@ describe('plotsSvg', () => {
     expect(path).toMatch(/^M56\.0 [\d.]+M466\.0 [\d.]+$/);
   });
 
+  it('leaves out an estimate that has diverged, and says so', () => {
+    const [curve] = spec.curves;
+    const diverged = {
+      ...curve,
+      name: 'dso',
+      short: '',
+      hue: { kind: 'estimate', colour: 1 } as const,
+      curve: () => ({ ...plain, t: [0, 2e9], values: [0, 2e12] }),
+    };
+    const curves = [...spec.curves, diverged];
+    const svg = plotsSvg([{ ...spec, curves, unbounded: true }], [2, 4], 1, style);
+    expect(svg).toContain('dso leaves the plot');
+    expect(svg).toContain('>0.8<');
+    const whole = plotsSvg([{ ...spec, curves }], [2, 4], 1, style);
+    expect(whole).not.toContain('leaves the plot');
+    expect(whole).toContain('>2.0e12<');
+  });
+
   it('escapes text', () => {
     const svg = plotsSvg([spec], [0, 4], 1, style);
     expect(svg).toContain('Error &#60;b&#62; [m]');
