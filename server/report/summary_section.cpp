@@ -1,6 +1,7 @@
 #include "server/report/summary_section.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/text/number_text.hpp"
@@ -169,6 +170,14 @@ std::string errors_words(const ReportEntry& entry, AlignmentMode mode) {
   return text;
 }
 
+/// ", 7.2 % more" than that of the alignment that is shown.
+std::string scale_change_words(const AlignmentScore* shown, const AlignmentScore& fitted) {
+  if (shown == nullptr || !(shown->S_world_vo.scale > 0.0)) return "";
+  const double change = fitted.S_world_vo.scale / shown->S_world_vo.scale - 1.0;
+  if (!std::isfinite(change)) return "";
+  return ", " + figure_text(100.0 * std::abs(change)) + " % " + (change < 0.0 ? "less" : "more");
+}
+
 std::string entry_words(const ReportEntry& entry, AlignmentMode mode) {
   const EstimatorMetrics& metrics = entry.metrics();
   std::string text =
@@ -181,7 +190,8 @@ std::string entry_words(const ReportEntry& entry, AlignmentMode mode) {
   text += errors_words(entry, mode);
   if (mode != AlignmentMode::kSim3) {
     if (const AlignmentScore* fitted = entry.aligned(AlignmentMode::kSim3)) {
-      text += " The best fit (sim3, scale " + figure_text(fitted->S_world_vo.scale) + ") leaves " +
+      text += " The best fit (sim3, scale " + figure_text(fitted->S_world_vo.scale) +
+              scale_change_words(entry.aligned(mode), *fitted) + ") leaves " +
               figure_text(fitted->position_m.rmse) + " m.";
     }
   }

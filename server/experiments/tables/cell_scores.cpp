@@ -95,6 +95,18 @@ void add_flight_errors(const FlightScore& flight,
   }
 }
 
+/// Of one flight; nothing unless it completed and determines both scales.
+std::optional<double> start_scale_percent(const FlightScore& flight) {
+  const auto& alignments = flight.score.alignments;
+  const auto start = alignments.find(AlignmentMode::kInitScale);
+  const auto fit = alignments.find(AlignmentMode::kSim3);
+  if (flight.outcome != Outcome::kCompleted || start == alignments.end() ||
+      fit == alignments.end()) {
+    return std::nullopt;
+  }
+  return 100.0 * (start->second.S_world_vo.scale / fit->second.S_world_vo.scale - 1.0);
+}
+
 CellScores scores_of(const SweepScores& scores,
                      const nlohmann::json& cell,
                      const std::string& estimator) {
@@ -102,6 +114,7 @@ CellScores scores_of(const SweepScores& scores,
   row.cell = cell;
   row.estimator = estimator;
   std::vector<ErrorValues> values(all_conventions().size());
+  std::vector<double> start_scales_percent;
   for (const FlightScore& flight : scores.flights) {
     if (flight.estimator != estimator || flight.cell != cell) continue;
     row.baseline = is_baseline_estimator(flight.type);
@@ -111,10 +124,12 @@ CellScores scores_of(const SweepScores& scores,
     row.texture_limited = row.texture_limited || flight.texture_limited;
     ++row.outcomes[evaluation::to_string(flight.outcome)];
     row.runs.push_back(flight.run);
+    keep(start_scales_percent, start_scale_percent(flight));
     for (std::size_t i = 0; i < values.size(); ++i) {
       add_flight_errors(flight, all_conventions()[i], values[i]);
     }
   }
+  row.start_scale_percent = spread_of(start_scales_percent);
   row.success = evaluation::wilson_interval(row.completed, row.flights);
   for (const ErrorValues& of_convention : values) row.errors.push_back(of_convention.spreads());
   return row;

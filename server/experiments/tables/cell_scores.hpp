@@ -81,6 +81,8 @@ struct CellScores {
   std::map<std::string, int> outcomes;  ///< name -> flights
   evaluation::ShareInterval success;    ///< of the success rate, 95 %
   std::vector<std::string> runs;
+  /// Of completed flights: by how much init_scale's scale is larger than that of sim3 [%].
+  std::optional<Spread> start_scale_percent;
   std::vector<CellErrors> errors;  ///< as all_conventions()
 };
 

@@ -181,7 +181,7 @@ std::string csv_from(const SweepTables& tables) {
     const std::string name = ",fix_drift_" + number_text(interval_m) + "m_";
     text += name + "median" + name + "worst";
   }
-  text += "\n";
+  text += ",start_scale_percent_median\n";
   for (const CellScores& row : tables.rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {
       for (const ShownAxis& axis : tables.scores.axes) {
@@ -209,6 +209,10 @@ std::string csv_from(const SweepTables& tables) {
                                      number_text(drift.worst_m)
                                : ",,";
       }
+      text += ",";
+      if (row.start_scale_percent) {
+        text += number_text(row.start_scale_percent->quartiles.median);
+      }
       text += "\n";
     }
   }
@@ -231,6 +235,7 @@ Json json_from(const SweepTables& tables) {
                     {"success_rate_95", {row.success.low, row.success.high}},
                     {"texture_limited", row.texture_limited},
                     {"outcomes", row.outcomes},
+                    {"start_scale_percent", spread_json(row.start_scale_percent)},
                     {"errors", std::move(errors)},
                     {"runs", row.runs}});
   }

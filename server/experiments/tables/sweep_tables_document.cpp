@@ -6,6 +6,7 @@
 
 #include "core/text/number_text.hpp"
 #include "server/experiments/tables/fix_drift_section.hpp"
+#include "server/experiments/tables/scale_section.hpp"
 #include "server/experiments/tables/table_parts.hpp"
 
 namespace overfly::server::experiments {
@@ -21,28 +22,6 @@ struct ShownQuantity {
 
 constexpr ShownQuantity kPosition{"position [m]", &CellErrors::position_m};
 constexpr ShownQuantity kRotation{"rotation [deg]", &CellErrors::rotation_deg};
-
-/// The rows of one cell, by estimator; null where it did not fly.
-using CellRows = std::vector<const CellScores*>;
-
-std::vector<CellRows> rows_by_cell(const SweepTables& tables) {
-  std::vector<CellRows> cells;
-  for (const Json& cell : tables.scores.cells) {
-    CellRows& found = cells.emplace_back();
-    for (const std::string& estimator : tables.scores.estimators) {
-      const auto row = std::find_if(tables.rows.begin(), tables.rows.end(), [&](const auto& r) {
-        return r.estimator == estimator && r.cell == cell;
-      });
-      found.push_back(row == tables.rows.end() ? nullptr : &*row);
-    }
-  }
-  return cells;
-}
-
-const Json& cell_of(const CellRows& rows) {
-  const auto first = std::find_if(rows.begin(), rows.end(), [](const auto* r) { return r; });
-  return (*first)->cell;
-}
 
 /// Medians of one quantity in one cell, and which of them are the lowest.
 struct CellMedians {
@@ -341,6 +320,8 @@ TableDocument document_from(const SweepTables& tables, const TableOptions& optio
     document.sections.push_back(published_section(tables, *options.published));
   }
   document.sections.push_back(outcome_section(tables));
+  DocumentSection scales = scale_section(tables);
+  if (!scales.table.rows.empty()) document.sections.push_back(std::move(scales));
   for (std::size_t i = 0; i < all_conventions().size(); ++i) {
     DocumentSection honesty = honesty_section(tables, i);
     if (!honesty.table.rows.empty()) document.sections.push_back(std::move(honesty));

@@ -1,6 +1,27 @@
 #include "server/experiments/tables/table_parts.hpp"
 
+#include <algorithm>
+
 namespace overfly::server::experiments {
+
+std::vector<CellRows> rows_by_cell(const SweepTables& tables) {
+  std::vector<CellRows> cells;
+  for (const nlohmann::json& cell : tables.scores.cells) {
+    CellRows& found = cells.emplace_back();
+    for (const std::string& estimator : tables.scores.estimators) {
+      const auto row = std::find_if(tables.rows.begin(), tables.rows.end(), [&](const auto& r) {
+        return r.estimator == estimator && r.cell == cell;
+      });
+      found.push_back(row == tables.rows.end() ? nullptr : &*row);
+    }
+  }
+  return cells;
+}
+
+const nlohmann::json& cell_of(const CellRows& rows) {
+  const auto first = std::find_if(rows.begin(), rows.end(), [](const auto* r) { return r; });
+  return (*first)->cell;
+}
 
 void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns) {
   for (const ShownAxis& axis : scores.axes) {

@@ -1,4 +1,5 @@
-// Parts that the tables of a sweep share: columns and cells of the axes, text of a spread.
+// Parts that the tables of a sweep share: rows of a cell, columns and cells of the axes, text of a
+// spread.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,14 @@
 #include "server/experiments/tables/sweep_tables.hpp"
 
 namespace overfly::server::experiments {
+
+/// The rows of one cell, by estimator; null where it did not fly.
+using CellRows = std::vector<const CellScores*>;
+
+/// Of every cell with a flight. They point into the tables.
+[[nodiscard]] std::vector<CellRows> rows_by_cell(const SweepTables& tables);
+/// @pre one of the rows is not null
+[[nodiscard]] const nlohmann::json& cell_of(const CellRows& rows);
 
 void add_axes(const SweepScores& scores, std::vector<TableColumn>& columns);
 

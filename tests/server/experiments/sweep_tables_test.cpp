@@ -34,7 +34,8 @@ struct Made {
   std::string type = "process";
   std::vector<double> nees = {};  ///< of the positions, if it states covariances
   std::vector<evaluation::FixDrift> fix_drift = {};
-  bool moves = true;  ///< false: Sim(3) does not determine its errors
+  bool moves = true;         ///< false: Sim(3) does not determine its errors
+  double start_scale = 1.0;  ///< of init_scale; that of Sim(3) is 1
 };
 
 evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
@@ -88,6 +89,7 @@ class SweepTablesTest : public ::testing::Test {
         estimator.score.alignments[AlignmentMode::kSim3] =
             alignment(AlignmentMode::kSim3, made, 0.1);
       }
+      estimator.score.alignments[AlignmentMode::kInitScale].S_world_vo.scale = made.start_scale;
     }
     fs::create_directories(folder_ / "runs" / id);
     std::ofstream(folder_ / "runs" / id / "metrics.json") << json_from(metrics);
@@ -184,7 +186,7 @@ TEST_F(SweepTablesTest, MarksEstimatorsThatAreOverconfident) {
   EXPECT_DOUBLE_EQ(honesty.deviation_ratio->quartiles.median, 2.0);
   EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 3 | 2 | 0 | 2.00 [1.50, 2.00] |\n"));
   EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | 0 |")));
-  EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2,,,,,,\n"));
+  EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2,,,,,,,0\n"));
   EXPECT_EQ(
       json_from(made).at("rows").at(0).at("errors").at("sim3").at("honesty").at("overconfident"),
       2);
@@ -210,7 +212,7 @@ TEST_F(SweepTablesTest, ShowsTheDriftBetweenFixesOfLongFlights) {
   EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 4.00 [3.50, 4.50] / 9.50 | - | - |\n"));
   EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | -")));
   EXPECT_THAT(csv_from(made), HasSubstr("fix_drift_1000m_median,fix_drift_1000m_worst"));
-  EXPECT_THAT(csv_from(made), HasSubstr(",4,9.5,,,,\n"));
+  EXPECT_THAT(csv_from(made), HasSubstr(",4,9.5,,,,,0\n"));
   const Json json = json_from(made).at("rows").at(0).at("errors").at("sim3").at("fix_drift");
   ASSERT_EQ(json.size(), 1U);
   EXPECT_EQ(json.at(0).at("worst_m"), 9.5);
@@ -220,7 +222,7 @@ TEST_F(SweepTablesTest, HasNoHonestyWithoutCovariances) {
   add({"one", 50, 0, 1.0, 0.1});
   EXPECT_THAT(markdown(), Not(HasSubstr("Honesty")));
   EXPECT_THAT(markdown(), Not(HasSubstr("position fixes")));
-  EXPECT_THAT(csv_from(tables()), HasSubstr("COMPLETED:1,0,0,0,,,,,,,\n"));
+  EXPECT_THAT(csv_from(tables()), HasSubstr("COMPLETED:1,0,0,0,,,,,,,,0\n"));
 }
 
 TEST_F(SweepTablesTest, TiesAreHighlightedTogether) {
@@ -337,6 +339,33 @@ TEST_F(SweepTablesTest, EscapesTextInEveryFormat) {
   EXPECT_THAT(latex_from(document), HasSubstr("\\begin{tabular}{rrrrrrr}"));
   EXPECT_THAT(latex_from(document), HasSubstr("Height [m] & one position [m]"));
   EXPECT_THAT(csv_from(made), HasSubstr("50.0,one,paper,1,1,1,"));
+}
+
+TEST_F(SweepTablesTest, ComparesTheScaleAtTheStartWithThatOfTheWholeFlight) {
+  Made off{"one", 50, 0, 46.8, 0.1};
+  off.start_scale = 0.9328;
+  add(off);
+  off.repeat = 1;
+  off.start_scale = 0.9330;
+  add(off);
+  add({"two", 50, 0, 1.0, 0.1, Outcome::kDiverged});
+  const SweepTables made = tables();
+  ASSERT_TRUE(made.rows.at(0).start_scale_percent);
+  EXPECT_NEAR(made.rows[0].start_scale_percent->quartiles.median, -6.71, 1e-9);
+  EXPECT_EQ(made.rows[0].start_scale_percent->flights, 2U);
+  EXPECT_FALSE(made.rows.at(1).start_scale_percent) << "of a flight that was not completed";
+  EXPECT_THAT(markdown(), HasSubstr("## Scale at the start"));
+  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | -6.71 | - |"));
+  EXPECT_THAT(csv_from(made), HasSubstr("start_scale_percent_median\n"));
+  EXPECT_THAT(csv_from(made), HasSubstr(",-6.7"));
+  const Json rows = json_from(made).at("rows");
+  EXPECT_NEAR(rows.at(0).at("start_scale_percent").at("median").get<double>(), -6.71, 1e-9);
+  EXPECT_TRUE(rows.at(1).at("start_scale_percent").is_null());
+}
+
+TEST_F(SweepTablesTest, HasNoScalesWithoutACompletedFlight) {
+  add({"one", 50, 0, 2.0, 0.1, Outcome::kLost});
+  EXPECT_THAT(markdown(), Not(HasSubstr("Scale at the start")));
 }
 
 TEST(ErrorNumber, HasThreeSignificantDigits) {
