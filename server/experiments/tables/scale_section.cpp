@@ -17,11 +17,9 @@ DocumentSection scale_section(const SweepTables& tables) {
   section.heading = "Scale at the start";
   section.paragraphs = {
       "By how much the scale of init_scale is larger than that of the best fit to the whole flight "
-      "(sim3), of flights with the outcome COMPLETED: median over the flights of a cell. It is "
-      "part "
-      "of the errors of convention paper: 1 % of it puts every pose off by 1 % of its distance "
-      "from "
-      "the first one."};
+      "(sim3), of flights with the outcome COMPLETED: median over the flights of a cell.",
+      "It is part of the errors of convention paper: 1 % of it puts every pose off by 1 % of its "
+      "distance from the first one."};
   section.notes = {"-: no completed flight determines both scales."};
   add_axes(tables.scores, section.table.columns);
   for (const std::string& estimator : tables.scores.estimators) {

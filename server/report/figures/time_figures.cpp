@@ -34,12 +34,12 @@ constexpr double kLogarithmicFrom = 20.0;
 constexpr double kLeastErrorRangeM = 0.1;
 constexpr double kLeastHeightRangeM = 2.0;
 
-/// Leaves estimates that have diverged out of the axis. @return what the caption says of them
-std::string leave_out_diverged(LinePlot& plot, double least_m) {
+/// Leaves estimates far beyond the others out of the axis. @return what the caption says of them
+std::string leave_out_far(LinePlot& plot, double least_m) {
   plot.unbounded_from = least_m;
   std::string words;
   for (const std::string& label : plot::shared_y_range(plot.series, least_m).beyond) {
-    words += " " + label + " has diverged and leaves the plot.";
+    words += " " + label + " leaves the plot: its values are far larger than the others.";
   }
   return words;
 }
@@ -102,10 +102,10 @@ std::string position_figure(const Flight& flight) {
   plot.area_height_px = 220.0;
   plot.logarithmic = logarithmic;
   plot.from_zero = !logarithmic;
-  const std::string diverged = leave_out_diverged(plot, kLeastErrorRangeM);
+  const std::string far = leave_out_far(plot, kLeastErrorRangeM);
   return figure("Position error.",
                 std::string("Distance of the estimate from the truth, aligned by ") +
-                    evaluation::to_string(flight.content.alignment) + "." + diverged,
+                    evaluation::to_string(flight.content.alignment) + "." + far,
                 plot::svg_of(plot));
 }
 
@@ -125,8 +125,8 @@ std::string axis_figure(const Flight& flight,
   if (plot.series.empty()) return "";
   plot.levels = {{0.0, ""}};
   plot.area_height_px = 120.0;
-  const std::string diverged = leave_out_diverged(plot, kLeastErrorRangeM);
-  return figure(title + ".", caption + diverged, plot::svg_of(plot));
+  const std::string far = leave_out_far(plot, kLeastErrorRangeM);
+  return figure(title + ".", caption + far, plot::svg_of(plot));
 }
 
 std::string rotation_figure(const Flight& flight) {
@@ -180,7 +180,7 @@ std::string pose_figure(const Flight& flight, const PoseQuantity& quantity) {
       time_plot(flight, quantity.name, quantity.title, quantity.y_label, std::move(series));
   plot.area_height_px = 120.0;
   std::string caption = quantity.caption;
-  if (!quantity.attitude) caption += leave_out_diverged(plot, kLeastHeightRangeM);
+  if (!quantity.attitude) caption += leave_out_far(plot, kLeastHeightRangeM);
   return figure(std::string(quantity.title) + ".", caption, plot::svg_of(plot));
 }
 

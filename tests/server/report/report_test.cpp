@@ -12,6 +12,7 @@
 #include "server/record/run_records.hpp"
 #include "server/report/best_values.hpp"
 #include "server/report/run/read_run.hpp"
+#include "server/report/run/words.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 #include "server/timeline/estimate_errors.hpp"
@@ -87,6 +88,12 @@ TEST_F(Report, HasTheNumbersOfEvaluate) {
                 "%.4g",
                 alignments.at("init_scale").at("position_rmse_m").get<double>());
   EXPECT_THAT(report.html, HasSubstr("<td class=\"n\">" + std::string(printed)));
+  // Of the estimator "d": how the best fit's scale differs from the one that is shown.
+  const double shown = alignments.at("init_scale").at("scale").get<double>();
+  const double fitted = alignments.at("sim3").at("scale").get<double>();
+  const std::string change = figure_text(100.0 * std::abs(fitted / shown - 1.0)) + " % " +
+                             (fitted < shown ? "less" : "more");
+  EXPECT_THAT(report.html, HasSubstr(figure_text(fitted) + ", " + change + ") leaves "));
 }
 
 /// The dashboard's errors over time are those of the report, by every alignment.

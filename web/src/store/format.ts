@@ -7,7 +7,7 @@ export function numberOf(value: unknown): number | null {
   return typeof value === 'number' ? value : null;
 }
 
-/** From here on with an exponent: errors of an estimator that has diverged have hundreds of digits. */
+/** From here on with an exponent: errors of an estimator that has diverged may have 300 digits. */
 const kLeastWithExponent = 1e10;
 
 /** Fixed digits with a true minus sign; an en dash for a missing value. */

@@ -38,6 +38,8 @@ export interface PathFrame {
 const kMargin = 1.12;
 const kLeast_m = 2;
 const kLeastStepWithExponent = 1e4;
+/** More than a double has are refused by toExponential. */
+const kMostExponentDigits = 16;
 const kScaleRange_m = [1e-4, 1e5] as const;
 
 /** Shows all from the least to the greatest x and y; the origin if there is nothing. */
@@ -121,7 +123,7 @@ export function tickText(value: number, step: number): string {
   const last = Math.abs(mantissa - Math.round(mantissa)) < 1e-6 ? power : power - 1;
   if (step >= kLeastStepWithExponent && value !== 0) {
     const first = Math.floor(Math.log10(Math.abs(value)) + 1e-9);
-    const digits = Math.max(0, first - last);
+    const digits = Math.min(kMostExponentDigits, Math.max(0, first - last));
     return value.toExponential(digits).replace('e+', 'e').replace('-', '−');
   }
   const text = value.toFixed(Math.min(6, Math.max(0, -last)));

@@ -4,7 +4,7 @@ import { decimated } from './curve';
 import { ticks, tickText } from './path_frame';
 import type { CurveHue, PlotSpec } from './plot_specs';
 import { paddedRange } from './plot_range';
-import { beyondText, curveExtent, sharedExtent } from './shared_extent';
+import { curveExtent, legendNames, sharedExtent } from './shared_extent';
 import { escaped, svgFile } from './svg_pen';
 import type { Span } from '../time_window';
 
@@ -114,8 +114,8 @@ function titles(
   beyond: readonly number[],
   style: SvgStyle,
 ): string {
-  const names = curves.map(({ name, hue }, i) => ({
-    name: beyond.includes(i) ? beyondText(name) : name,
+  const names = legendNames(curves, beyond).map(({ name, hue }) => ({
+    name,
     colour: style.curve(hue).colour,
   }));
   return svgTitles(kLeft_px, unit === '' ? label : `${label} [${unit}]`, names, style.text);

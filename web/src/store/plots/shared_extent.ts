@@ -74,6 +74,16 @@ export function beyondText(name: string): string {
   return `${name} leaves the plot`;
 }
 
+/** Of a file's legend, which says of those that are left out that they are. */
+export function legendNames<T extends { name: string }>(
+  curves: readonly T[],
+  beyond: readonly number[],
+): T[] {
+  return curves.map((curve, i) =>
+    beyond.includes(i) ? { ...curve, name: beyondText(curve.name) } : curve,
+  );
+}
+
 function union(a: Extent | null, b: Extent): Extent {
   if (a === null) return b;
   return {

@@ -1,11 +1,11 @@
-// Names the estimates that a plot leaves out because they have diverged.
+// Names the estimates that a plot leaves out because they are far beyond the others.
 import type { CurveHue } from '../../store/plots/plot_specs';
 import { beyondText } from '../../store/plots/shared_extent';
 import { curveStyle } from '../colours';
 import { h, rebuild } from '../dom';
 
 const kHint =
-  'Diverged: its values are so large that the others would be one line. Hide the others to see all of it.';
+  'Its values are so large that the others would be one line. Hide the others to see all of it.';
 
 export class BeyondNote {
   readonly root = h('div', { class: 'plot-beyond', title: kHint });

@@ -5,7 +5,7 @@ import { driftAt, driftExtent, nearestLength } from '../../store/plots/drift_spe
 import type { Size } from '../../store/plots/path_frame';
 import { ticks, tickText } from '../../store/plots/path_frame';
 import type { SharedExtent } from '../../store/plots/shared_extent';
-import { beyondText } from '../../store/plots/shared_extent';
+import { legendNames } from '../../store/plots/shared_extent';
 import type { Pen } from '../../store/plots/svg_pen';
 import { curveStyle } from '../colours';
 import { h, perFrame, setAttribute } from '../dom';
@@ -32,10 +32,9 @@ export class DriftPlot {
   });
 
   private readonly beyond = new BeyondNote();
-  private shared: SharedExtent | null;
+  private shared: SharedExtent | null = null;
 
   constructor(private spec: DriftSpec) {
-    this.shared = driftExtent(spec);
     this.plot.area.append(this.beyond.root);
     const { key, label, unit, hint } = spec;
     this.root = h(
@@ -75,10 +74,7 @@ export class DriftPlot {
   /** As it is shown, drawn into a file. */
   drawing(): Drawing {
     const { label, unit, curves } = this.spec;
-    const names = curves.map(({ name, hue }, i) => ({
-      name: this.shared?.beyond.includes(i) === true ? beyondText(name) : name,
-      hue,
-    }));
+    const names = legendNames(curves, this.shared?.beyond ?? []);
     return this.plot.drawing(kLeft_px, `${label} [${unit}]`, names);
   }
 

@@ -14,7 +14,8 @@ import {
 import type { Pen } from '../../store/plots/svg_pen';
 import type { State } from '../../store/state';
 import { hueOf } from '../../store/plots/plot_specs';
-import { beyondText } from '../../store/plots/shared_extent';
+import type { SharedExtent } from '../../store/plots/shared_extent';
+import { legendNames } from '../../store/plots/shared_extent';
 import { drawnTracks, tableOf, tracksOf } from '../../store/tracks';
 import { curveStyle } from '../colours';
 import { h, setText } from '../dom';
@@ -53,7 +54,7 @@ export class PathPlot {
   private readonly readout = h('span', { class: 'readout' });
   private readonly beyond = new BeyondNote();
   private paths: readonly Path[] = [];
-  private box: ReturnType<typeof boxOf> = null;
+  private box: SharedExtent | null = null;
   private marks: readonly PathMark[] = [];
   /** null = everything. */
   private chosen: PathFrame | null = null;
@@ -129,10 +130,7 @@ export class PathPlot {
   /** As it is shown, drawn into a file: its title, names and tracks. */
   drawing(): Drawing {
     const { label, hint } = this.axes;
-    const names = this.paths.map(({ name, hue }, i) => ({
-      name: this.box?.beyond.includes(i) === true ? beyondText(name) : name,
-      hue,
-    }));
+    const names = legendNames(this.paths, this.box?.beyond ?? []);
     return this.plot.drawing(8, `${label}: ${hint} [m]`, names);
   }
 

@@ -65,6 +65,7 @@ describe('ticks', () => {
     expect(tickText(120000, 10000)).toBe('1.2e5');
     expect(tickText(1e6, 2e5)).toBe('1.0e6');
     expect(tickText(0, 1e5)).toBe('0');
+    expect(tickText(1e300, 1e5)).toBe('1.0000000000000001e300');
     expect(tickText(12.5, 2.5)).toBe('12.5');
     expect(tickText(0.75, 0.25)).toBe('0.75');
     expect(tickText(1.25e6, 2.5e5)).toBe('1.25e6');
