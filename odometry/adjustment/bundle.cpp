@@ -2,8 +2,13 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "odometry/adjustment/bundle_terms.hpp"
 
@@ -22,16 +27,37 @@ ceres::Solver::Options solver_options(int max_iterations,
   return options;
 }
 
+/// The terms of all sights, in memory in the order of the points, in which the solver evaluates
+/// them.
+struct Terms {
+  Terms(const PinholeCamera& camera, const std::vector<Bundle::Sight>& sights)
+      : of_sight(sights.size()) {
+    std::vector<std::size_t> order(sights.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return sights[a].point < sights[b].point;
+    });
+    for (const std::size_t i : order) {
+      of_sight[i] = &terms.emplace_back(camera, sights[i].pixel, sights[i].sigma_px);
+    }
+  }
+
+  std::deque<Reprojection> terms;
+  std::vector<Reprojection*> of_sight;
+};
+
 }  // namespace
 
 double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& options) {
   std::vector<PoseBlock> blocks(bundle.cameras.size());
   ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.disable_all_safety_checks = true;
   PoseManifold manifold;
   ceres::HuberLoss loss(options.huber);
+  Terms terms(camera, bundle.sights);
   ceres::Problem problem(ownership);
   const auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -44,8 +70,9 @@ double adjust(const PinholeCamera& camera, Bundle& bundle, const BundleOptions& 
     problem.AddParameterBlock(point.data(), 3);
     ordering->AddElementToGroup(point.data(), 0);
   }
-  for (const Bundle::Sight& sight : bundle.sights) {
-    problem.AddResidualBlock(new Reprojection(camera, sight.pixel, sight.sigma_px),
+  for (std::size_t i = 0; i < bundle.sights.size(); ++i) {
+    const Bundle::Sight& sight = bundle.sights[i];
+    problem.AddResidualBlock(terms.of_sight[i],
                              &loss,
                              blocks[static_cast<std::size_t>(sight.camera)].data(),
                              bundle.points_vo[static_cast<std::size_t>(sight.point)].data());

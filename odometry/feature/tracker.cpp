@@ -17,6 +17,13 @@ constexpr int kSearchedPerInlierInScene = 6;
 
 }  // namespace
 
+/// A point of the local map, with what selects it side by side.
+struct Tracker::LocalPoint {
+  Eigen::Vector3d position_vo;
+  const MapPoint* point;
+  std::size_t keyframes;  ///< number of keyframes that observe it
+};
+
 struct Tracker::Projection {
   const MapPoint* point = nullptr;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -53,17 +60,27 @@ PatchWarp warp_of(const PinholeCamera& camera,
                  T_camera_vo.rotation * point.normal_vo);
 }
 
+std::vector<Tracker::LocalPoint> Tracker::local_points(const Map& map) const {
+  const int oldest = map.newest().id - options_.local_keyframes;
+  std::vector<LocalPoint> local;
+  local.reserve(map.points().size());
+  for (const MapPoint& point : map.points()) {
+    if (point.keyframes.back() < oldest) continue;
+    local.push_back({point.position_vo, &point, point.keyframes.size()});
+  }
+  return local;
+}
+
 /// One point of the local map for each cell of the image, the best observed first.
 std::vector<Tracker::Projection> Tracker::project(const Pyramid& image,
                                                   const Pose& T_camera_vo,
-                                                  const Map& map) const {
-  const int oldest = map.newest().id - options_.local_keyframes;
+                                                  const std::vector<LocalPoint>& local) const {
   const CellGrid grid = CellGrid::over(camera_.width_px, camera_.height_px, options_.max_points);
   std::vector<Projection> cells(grid.marked.size());
   const Eigen::Matrix3d R = T_camera_vo.rotation.toRotationMatrix();
-  for (const auto& [id, point] : map.points()) {
-    if (point.keyframes.back() < oldest) continue;
-    const auto pixel = camera_.project(R * point.position_vo + T_camera_vo.translation);
+  std::vector<std::size_t> keyframes(cells.size());
+  for (const LocalPoint& candidate : local) {
+    const auto pixel = camera_.project(R * candidate.position_vo + T_camera_vo.translation);
     if (!pixel || pixel->x() < kBorderPx || pixel->y() < kBorderPx ||
         pixel->x() > camera_.width_px - 1 - kBorderPx ||
         pixel->y() > camera_.height_px - 1 - kBorderPx) {
@@ -75,11 +92,11 @@ std::vector<Tracker::Projection> Tracker::project(const Pyramid& image,
       continue;
     }
     if (image.burnt_at(*pixel)) continue;
-    Projection& cell = cells[grid.index(*pixel)];
+    const std::size_t cell = grid.index(*pixel);
     // On a tie later points win: their patch is from a more similar view.
-    if (cell.point == nullptr || point.keyframes.size() >= cell.point->keyframes.size()) {
-      cell = {&point, *pixel};
-    }
+    if (candidate.keyframes < keyframes[cell]) continue;
+    keyframes[cell] = candidate.keyframes;
+    cells[cell] = {candidate.point, *pixel};
   }
   std::erase_if(cells, [](const Projection& cell) { return cell.point == nullptr; });
   return cells;
@@ -121,13 +138,14 @@ TrackResult Tracker::track(const Pyramid& image,
                            const Map& map) const {
   TrackResult result;
   result.T_camera_vo = T_predicted;
+  const std::vector<LocalPoint> local = local_points(map);
   if (!align_coarsely(
-          image, project(image, T_predicted, map), coarse_level, map, result.T_camera_vo)) {
+          image, project(image, T_predicted, local), coarse_level, map, result.T_camera_vo)) {
     return result;
   }
   std::vector<PoseObservation> observations;
   std::vector<int> ids;
-  const std::vector<Projection> projections = project(image, result.T_camera_vo, map);
+  const std::vector<Projection> projections = project(image, result.T_camera_vo, local);
   for (std::size_t i = 0; i < projections.size(); ++i) {
     if (i + 1 < projections.size()) {
       const MapPoint& next = *projections[i + 1].point;

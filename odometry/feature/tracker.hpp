@@ -55,10 +55,13 @@ class Tracker {
                                   const Map& map) const;
 
  private:
+  struct LocalPoint;
   struct Projection;
+  /// The points that the newest keyframes observe.
+  [[nodiscard]] std::vector<LocalPoint> local_points(const Map& map) const;
   [[nodiscard]] std::vector<Projection> project(const Pyramid& image,
                                                 const Pose& T_camera_vo,
-                                                const Map& map) const;
+                                                const std::vector<LocalPoint>& local) const;
   bool align_coarsely(const Pyramid& image,
                       const std::vector<Projection>& projections,
                       int coarse_level,

@@ -3,13 +3,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace overfly::odometry {
 namespace {
 
-constexpr int kBorder = kPatchSize + 2;
 constexpr float kHalf = 0.5F * (kPatchSize - 1);
 constexpr int kMaxIterations = 12;
 constexpr float kSettledPx = 0.008F;
@@ -17,47 +15,6 @@ constexpr float kSettledPx = 0.008F;
 /// slides along an edge or is dominated by noise.
 constexpr float kMinEigenvalue = 4.0F;
 constexpr float kMaxTravelPx = 10.0F;
-
-/// Samples of a line, with some that are not used, so that the compiler computes four at a time.
-constexpr int kLine = (kBorder + 3) / 4 * 4;
-
-/// Lines of kBorder samples, and room for the unused ones of the last line.
-using BorderPatch =
-    std::array<float, static_cast<std::size_t>(kBorder) * kBorder + kLine - kBorder>;
-
-/// A line of samples, computed in steps: where they lie, the four pixels around each, their mean by
-/// distance.
-struct SampleLine {
-  std::array<float, kLine> x, y;
-
-  /// @param out  kLine values
-  void read(const cv::Mat& image, float* out) const {
-    std::array<std::int32_t, kLine> x0, y0;
-    std::array<float, kLine> ax, ay;
-    for (int i = 0; i < kLine; ++i) {
-      x0[i] = static_cast<std::int32_t>(x[i]);
-      y0[i] = static_cast<std::int32_t>(y[i]);
-      ax[i] = x[i] - static_cast<float>(x0[i]);
-      ay[i] = y[i] - static_cast<float>(y0[i]);
-    }
-    // The upper two pixels in the low half, the lower two in the high half.
-    std::array<std::uint32_t, kLine> pixels{};
-    for (int i = 0; i < kBorder; ++i) {
-      const std::uint8_t* top = image.ptr<std::uint8_t>(y0[i]) + x0[i];
-      const std::uint8_t* bottom = top + image.step;
-      pixels[i] = static_cast<std::uint32_t>(top[0] | top[1] << 8) |
-                  static_cast<std::uint32_t>(bottom[0] | bottom[1] << 8) << 16;
-    }
-    const auto pixel = [](std::uint32_t four, int i) {
-      return static_cast<float>(static_cast<std::int32_t>(four >> (8 * i) & 255U));
-    };
-    for (int i = 0; i < kLine; ++i) {
-      const std::uint32_t four = pixels[i];
-      out[i] = (1.0F - ay[i]) * ((1.0F - ax[i]) * pixel(four, 0) + ax[i] * pixel(four, 1)) +
-               ay[i] * ((1.0F - ax[i]) * pixel(four, 2) + ax[i] * pixel(four, 3));
-    }
-  }
-};
 
 /// Samples a (P + 2)^2 patch around a centre with the warp applied.
 bool sample_warped(const cv::Mat& image,
@@ -80,46 +37,35 @@ bool sample_warped(const cv::Mat& image,
       }
     }
   }
-  float* out = patch.data();
-  for (int row = 0; row < kBorder; ++row) {
-    const Eigen::Vector2f left(-reach, static_cast<float>(row) - reach);
-    const Eigen::Vector2f start = A * left;
-    const float depth = 1.0F + g.dot(left);
-    SampleLine line;
-    for (int column = 0; column < kLine; ++column) {
-      const auto step = static_cast<float>(column);
-      const float scale = 1.0F / (depth + step * g.x());
-      line.x[column] = centre.x() + scale * (start.x() + step * A(0, 0));
-      line.y[column] = centre.y() + scale * (start.y() + step * A(1, 0));
-    }
-    line.read(image, out);
-    out += kBorder;
-  }
+  best_patch_sampler().warped(image, {centre, A, g}, patch);
   return true;
 }
 
 /// Fills the template from a sampled patch; returns false without texture in both directions.
 bool fill_template(const BorderPatch& patch, PatchTemplate& out) {
-  float sum = 0.0F;
-  Eigen::Vector2f gradient_sum = Eigen::Vector2f::Zero();
-  Eigen::Matrix2f H = Eigen::Matrix2f::Zero();
   for (int row = 0; row < kPatchSize; ++row) {
-    const float* p = patch.data() + static_cast<std::ptrdiff_t>(row + 1) * kBorder + 1;
-    for (int column = 0; column < kPatchSize; ++column, ++p) {
-      const int i = row * kPatchSize + column;
-      const float gx = 0.5F * (p[1] - p[-1]);
-      const float gy = 0.5F * (p[kBorder] - p[-kBorder]);
-      out.value[i] = *p;
-      out.gradient_x[i] = gx;
-      out.gradient_y[i] = gy;
-      sum += *p;
-      gradient_sum += Eigen::Vector2f(gx, gy);
-      H(0, 0) += gx * gx;
-      H(0, 1) += gx * gy;
-      H(1, 1) += gy * gy;
-    }
+    const float* p = patch.data() + static_cast<std::ptrdiff_t>(row + 1) * kBorderSide + 1;
+    const auto first = static_cast<std::ptrdiff_t>(row) * kPatchSize;
+    using Line = Eigen::Matrix<float, kPatchSize, 1>;
+    const auto at = [p](std::ptrdiff_t offset) { return Eigen::Map<const Line>(p + offset); };
+    out.value.segment<kPatchSize>(first) = at(0);
+    out.gradient_x.segment<kPatchSize>(first) = 0.5F * (at(1) - at(-1));
+    out.gradient_y.segment<kPatchSize>(first) = 0.5F * (at(kBorderSide) - at(-kBorderSide));
   }
-  H(1, 0) = H(0, 1);
+  float sum = 0.0F, sum_x = 0.0F, sum_y = 0.0F, sum_xx = 0.0F, sum_xy = 0.0F, sum_yy = 0.0F;
+  for (int i = 0; i < kPatchArea; ++i) {
+    const float gx = out.gradient_x[i];
+    const float gy = out.gradient_y[i];
+    sum += out.value[i];
+    sum_x += gx;
+    sum_y += gy;
+    sum_xx += gx * gx;
+    sum_xy += gx * gy;
+    sum_yy += gy * gy;
+  }
+  const Eigen::Vector2f gradient_sum(sum_x, sum_y);
+  Eigen::Matrix2f H;
+  H << sum_xx, sum_xy, sum_xy, sum_yy;
   // The mean is a free parameter: eliminate it from the normal equations.
   H -= gradient_sum * gradient_sum.transpose() / static_cast<float>(kPatchArea);
   out.value.array() -= sum / static_cast<float>(kPatchArea);
@@ -135,24 +81,24 @@ bool fill_template(const BorderPatch& patch, PatchTemplate& out) {
   return true;
 }
 
-/// Reads the P x P patch whose first pixel is at (x, y), a sub-pixel position inside the image.
-void sample_shifted(const cv::Mat& image, float x, float y, PatchVector& out) {
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float ax = x - static_cast<float>(x0);
-  const float ay = y - static_cast<float>(y0);
-  const float w00 = (1.0F - ax) * (1.0F - ay);
-  const float w01 = ax * (1.0F - ay);
-  const float w10 = (1.0F - ax) * ay;
-  const float w11 = ax * ay;
-  for (int row = 0; row < kPatchSize; ++row) {
-    const std::uint8_t* top = image.ptr<std::uint8_t>(y0 + row) + x0;
-    const std::uint8_t* bottom = top + image.step;
-    float* line = out.data() + static_cast<std::ptrdiff_t>(row) * kPatchSize;
-    for (int i = 0; i < kPatchSize; ++i) {
-      line[i] = w00 * top[i] + w01 * top[i + 1] + w10 * bottom[i] + w11 * bottom[i + 1];
-    }
-  }
+bool fill_template(const Pyramid& source,
+                   const Eigen::Vector2d& source_pixel,
+                   const PatchWarp& warp,
+                   int level,
+                   PatchTemplate& out) {
+  const double area = 1.0 / warp.A_source_other.determinant();
+  if (!(area > 0.1 && area < 10.0)) return false;
+  // Source level with the pixel size nearest to that of the searched level.
+  const int change = static_cast<int>(std::lround(-0.5 * std::log2(area)));
+  const int source_level = std::clamp(level + change, 0, source.level_count() - 1);
+  const double scale = std::ldexp(1.0, level - source_level);
+  const Eigen::Matrix2f A = (scale * warp.A_source_other).cast<float>();
+  const Eigen::Vector2f g = (std::ldexp(1.0, level) * warp.g_per_px).cast<float>();
+  const Eigen::Vector2f centre = (source_pixel * std::ldexp(1.0, -source_level)).cast<float>();
+  BorderPatch sampled;
+  if (!sample_warped(source.level(source_level), centre, A, g, sampled)) return false;
+  out.level = level;
+  return fill_template(sampled, out);
 }
 
 struct Comparison {
@@ -192,7 +138,7 @@ void fetch_patch(const Pyramid& image, const Eigen::Vector2d& pixel, int level) 
   const Eigen::Vector2d middle = pixel * std::ldexp(1.0, -level);
   // Negated, so that NaN also counts as outside.
   if (!(middle.minCoeff() >= 0.0 && middle.x() < pixels.cols && middle.y() < pixels.rows)) return;
-  constexpr int kReach = 3 * kBorder / 4;  // a patch may be turned
+  constexpr int kReach = 3 * kBorderSide / 4;  // a patch may be turned
   const int left = std::max(static_cast<int>(middle.x()) - kReach, 0);
   const int right = std::min(static_cast<int>(middle.x()) + kReach, pixels.cols - 1);
   const int bottom = std::min(static_cast<int>(middle.y()) + kReach, pixels.rows - 1);
@@ -208,20 +154,9 @@ std::optional<PatchTemplate> make_template(const Pyramid& source,
                                            const Eigen::Vector2d& source_pixel,
                                            const PatchWarp& warp,
                                            int level) {
-  std::optional<PatchTemplate> result;  // the only value returned, so that none is copied
-  const double area = 1.0 / warp.A_source_other.determinant();
-  if (!(area > 0.1 && area < 10.0)) return result;
-  // Source level with the pixel size nearest to that of the searched level.
-  const int change = static_cast<int>(std::lround(-0.5 * std::log2(area)));
-  const int source_level = std::clamp(level + change, 0, source.level_count() - 1);
-  const double scale = std::ldexp(1.0, level - source_level);
-  const Eigen::Matrix2f A = (scale * warp.A_source_other).cast<float>();
-  const Eigen::Vector2f g = (std::ldexp(1.0, level) * warp.g_per_px).cast<float>();
-  const Eigen::Vector2f centre = (source_pixel * std::ldexp(1.0, -source_level)).cast<float>();
-  BorderPatch sampled;
-  if (!sample_warped(source.level(source_level), centre, A, g, sampled)) return result;
-  result.emplace().level = level;
-  if (!fill_template(sampled, *result)) result.reset();
+  // Not empty at first: GCC sets all of an empty optional to zero.
+  std::optional<PatchTemplate> result(std::in_place);
+  if (!fill_template(source, source_pixel, warp, level, *result)) result.reset();
   return result;
 }
 
@@ -269,7 +204,7 @@ std::optional<PatchMatch> align_patch(const Pyramid& image,
     if (!(corner.minCoeff() >= 0.0F && corner.x() < limit.x() && corner.y() < limit.y())) {
       return std::nullopt;
     }
-    sample_shifted(level, corner.x(), corner.y(), sampled);
+    best_patch_sampler().shifted(level, corner.x(), corner.y(), sampled.data());
     comparison = compare(patch, sampled);
     const Eigen::Vector2f step = patch.inverse_hessian * comparison.gradient_error;
     corner -= step;

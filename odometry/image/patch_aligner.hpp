@@ -5,12 +5,11 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "odometry/image/patch_samples.hpp"
 #include "odometry/image/pyramid.hpp"
 
 namespace overfly::odometry {
 
-inline constexpr int kPatchSize = 12;
-inline constexpr int kPatchArea = kPatchSize * kPatchSize;
 using PatchVector = Eigen::Matrix<float, kPatchArea, 1>;  ///< row-major patch
 
 /// Maps offsets on the plane around a patch's centre from the searching view to the source view:

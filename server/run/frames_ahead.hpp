@@ -10,7 +10,7 @@ namespace overfly::server {
 
 /// An estimator that takes ten times as long for a keyframe as for other frames is busy all the
 /// time with this many frames in front of it.
-inline constexpr std::size_t kMostFramesAhead = 8;
+inline constexpr std::size_t kMostFramesAhead = 24;
 /// Limit of the memory of these frames.
 inline constexpr std::uint64_t kFramesAheadBytes = std::uint64_t{32} << 20U;
 

@@ -20,8 +20,7 @@ Keyframe& Map::add_keyframe(Keyframe keyframe) {
 
 MapPoint& Map::add_point(MapPoint point) {
   point.id = next_point_++;
-  const int id = point.id;
-  return points_.emplace_hint(points_.end(), id, std::move(point))->second;
+  return points_.add(std::move(point));
 }
 
 void Map::add_observation(Keyframe& keyframe, const Observation& observation) {
@@ -57,10 +56,11 @@ void Map::forget_images(int keep_newest) {
     i->second.candidates.clear();
   }
   std::vector<int> gone;
-  for (const auto& [id, point] : points_) {
-    if (point.source_keyframe < first_kept) gone.push_back(id);
+  for (const MapPoint& point : points_) {
+    if (point.source_keyframe < first_kept) gone.push_back(point.id);
   }
   for (const int id : gone) remove_point(id);
+  points_.trim();
   std::erase_if(keyframes_, [first_kept](const auto& entry) {
     return entry.first < first_kept && entry.second.observations.empty();
   });
@@ -86,8 +86,8 @@ Map Map::newest_part(int keyframes) const {
     copy.plane = whole.plane;
     if (std::next(i) == keyframes_.end()) copy.observations = whole.observations;
   }
-  for (const auto& [id, point] : points_) {
-    if (point.source_keyframe >= first) part.points_.emplace_hint(part.points_.end(), id, point);
+  for (const MapPoint& point : points_) {
+    if (point.source_keyframe >= first) part.points_.add(point);
   }
   return part;
 }
@@ -99,20 +99,10 @@ std::size_t Map::memory_bytes() const {
     bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(Observation) +
              keyframe.candidates.capacity() * sizeof(Candidate);
   }
-  for (const auto& [id, point] : points_) {
+  for (const MapPoint& point : points_) {
     bytes += sizeof(MapPoint) + point.keyframes.capacity() * sizeof(int);
   }
   return bytes;
-}
-
-MapPoint* Map::point(int id) {
-  const auto found = points_.find(id);
-  return found == points_.end() ? nullptr : &found->second;
-}
-
-const MapPoint* Map::point(int id) const {
-  const auto found = points_.find(id);
-  return found == points_.end() ? nullptr : &found->second;
 }
 
 const MapPoint* point_at(const Map& map,

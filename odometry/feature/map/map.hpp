@@ -10,6 +10,7 @@
 
 #include "core/camera/camera.hpp"
 #include "core/motion/pose.hpp"
+#include "odometry/feature/map/id_table.hpp"
 #include "odometry/feature/orb.hpp"
 #include "odometry/geometry/lie.hpp"
 #include "odometry/image/pyramid.hpp"
@@ -92,13 +93,13 @@ class Map {
 
   [[nodiscard]] std::map<int, Keyframe>& keyframes() { return keyframes_; }
   [[nodiscard]] const std::map<int, Keyframe>& keyframes() const { return keyframes_; }
-  [[nodiscard]] std::map<int, MapPoint>& points() { return points_; }
-  [[nodiscard]] const std::map<int, MapPoint>& points() const { return points_; }
+  [[nodiscard]] IdTable<MapPoint>& points() { return points_; }
+  [[nodiscard]] const IdTable<MapPoint>& points() const { return points_; }
   [[nodiscard]] Keyframe& keyframe(int id) { return keyframes_.at(id); }
   [[nodiscard]] const Keyframe& keyframe(int id) const { return keyframes_.at(id); }
   /// Null if the point was removed.
-  [[nodiscard]] MapPoint* point(int id);
-  [[nodiscard]] const MapPoint* point(int id) const;
+  [[nodiscard]] MapPoint* point(int id) { return points_.find(id); }
+  [[nodiscard]] const MapPoint* point(int id) const { return points_.find(id); }
   /// @pre the map is not empty
   [[nodiscard]] Keyframe& newest() { return keyframes_.rbegin()->second; }
   [[nodiscard]] const Keyframe& newest() const { return keyframes_.rbegin()->second; }
@@ -108,7 +109,7 @@ class Map {
 
  private:
   std::map<int, Keyframe> keyframes_;
-  std::map<int, MapPoint> points_;
+  IdTable<MapPoint> points_;
   int next_keyframe_ = 0;
   int next_point_ = 0;
   int first_with_image_ = 0;

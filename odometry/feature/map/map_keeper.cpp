@@ -75,8 +75,9 @@ const Map& MapKeeper::refresh() {
 
 void MapKeeper::note_sights(const TrackResult& tracked) {
   for (const TrackedPoint& seen : tracked.points) {
-    ++sights_[seen.point].expected;
-    ++sights_[seen.point].found;
+    Sights& sights = sights_[seen.point];
+    ++sights.expected;
+    ++sights.found;
   }
   for (const TrackedPoint& seen : tracked.outliers) ++sights_[seen.point].expected;
   for (const int id : tracked.missed) ++sights_[id].expected;
@@ -167,7 +168,7 @@ void MapKeeper::map_keyframe(const Work& work, std::map<std::string, double>& ti
   }
 }
 
-void MapKeeper::count(const std::map<int, Sights>& sights) {
+void MapKeeper::count(const std::unordered_map<int, Sights>& sights) {
   for (const auto& [id, seen] : sights) {
     MapPoint* point = map_.point(id);
     if (point == nullptr) continue;

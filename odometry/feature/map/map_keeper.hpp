@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <unordered_map>
 #include <vector>
 
 #include "odometry/feature/map/focal_check.hpp"
@@ -24,7 +25,6 @@ namespace overfly::odometry::feature {
 /// the mapping thread owns the map from `begin` to `clear`, and `view` is the newest copy it
 /// published: after new points have a depth, and again after the adjustment.
 ///
-/// All calls must come from the tracking thread.
 /// All calls must come from the tracking thread.
 class MapKeeper {
  public:
@@ -79,12 +79,12 @@ class MapKeeper {
   struct Work {
     FrameImage frame;
     TrackResult tracked;
-    std::map<int, Sights> sights;
+    std::unordered_map<int, Sights> sights;
   };
 
   void run();
   void map_keyframe(const Work& work, std::map<std::string, double>& timing_ms);
-  void count(const std::map<int, Sights>& sights);
+  void count(const std::unordered_map<int, Sights>& sights);
   void publish();
 
   Mapper mapper_;
@@ -93,8 +93,8 @@ class MapKeeper {
   bool threaded_;
   Map map_;
   FocalCheck focal_check_;
-  std::map<int, Sights> sights_;     ///< by point id
-  std::shared_ptr<const Map> view_;  ///< null with one thread
+  std::unordered_map<int, Sights> sights_;  ///< by point id
+  std::shared_ptr<const Map> view_;         ///< null with one thread
 
   mutable std::mutex mutex_;  ///< protects all members below
   std::condition_variable changed_;

@@ -205,9 +205,9 @@ void Mapper::cull(Map& map) const {
   const int enough =
       map.newest().plane.holds ? kExpectedBeforeCulling : kExpectedBeforeCullingInScene;
   std::vector<int> gone;
-  for (const auto& [id, point] : map.points()) {
+  for (const MapPoint& point : map.points()) {
     if (point.expected >= enough && point.found < kMinFoundShare * point.expected) {
-      gone.push_back(id);
+      gone.push_back(point.id);
     }
   }
   for (const int id : gone) map.remove_point(id);

@@ -18,7 +18,7 @@ std::vector<PoseObservation> match_points(const RelocaliserOptions& options,
   const int oldest = map.newest().id - options.keyframes;
   std::vector<const MapPoint*> points;
   std::vector<Descriptor> descriptors;  // side by side: each is compared with every corner
-  for (const auto& [id, point] : map.points()) {
+  for (const MapPoint& point : map.points()) {
     if (point.keyframes.back() < oldest) continue;
     points.push_back(&point);
     descriptors.push_back(point.descriptor);

@@ -137,7 +137,7 @@ void fill_first_map(const PinholeCamera& camera,
     map.add_observation(keyframe, {ids[index], sight.pixel, sight.sigma_px});
   }
   for (auto& [id, keyframe] : map.keyframes()) fit_plane(camera, map, keyframe);
-  for (auto& [id, point] : map.points()) {
+  for (MapPoint& point : map.points()) {
     const Keyframe& source = map.keyframe(point.source_keyframe);
     if (source.plane.holds) set_normal(camera, source, point);
   }

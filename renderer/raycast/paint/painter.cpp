@@ -24,6 +24,17 @@ void fill(const Block& block, const Colour& colour, int channels, float* values)
   }
 }
 
+/// The nearest integers of a row of values in [0, 255]. @param columns  at most kBlockSide
+void put_row(const float* row, int columns, std::uint8_t* out) {
+  std::array<std::uint8_t, kBlockSide> bytes;  // no alias of the values, so that vectors are used
+  for (int x = 0; x < kBlockSide; ++x) bytes[x] = static_cast<std::uint8_t>(rounded(row[x]));
+  if (columns == kBlockSide) {
+    std::copy(bytes.begin(), bytes.end(), out);  // of a length known to the compiler
+  } else {
+    std::copy_n(bytes.begin(), columns, out);
+  }
+}
+
 template <int kChannels>
 void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
   const auto byte = [](float value) { return static_cast<std::uint8_t>(rounded(value)); };
@@ -31,6 +42,10 @@ void put_bytes(const Block& block, const float* values, const Canvas& canvas) {
     std::uint8_t* out =
         canvas.bytes +
         (static_cast<std::size_t>(block.y + y) * canvas.width_px + block.x) * kChannels;
+    if constexpr (kChannels == 1) {
+      put_row(values + y * kBlockSide, block.columns, out);
+      continue;
+    }
     for (int c = 0; c < kChannels; ++c) {
       const float* row = values + c * kBlockPixels + y * kBlockSide;
       if (block.columns == kBlockSide) {  // a length known to the compiler
@@ -102,12 +117,16 @@ void Painter::paint(const Band& band,
   const auto plan = [&](std::size_t i) {
     if (i >= band.blocks.size()) return;
     const Block& block = band.blocks[i];
-    if (canvas.bytes == nullptr) {
-      // Rows of sums lie on different pages, so that the processor does not read them ahead by
-      // itself.
+    const auto fetch = [&](const auto* pixels) {
+      // Rows are far apart, so that the processor does not read them ahead by itself.
       const std::size_t stride = static_cast<std::size_t>(canvas.width_px) * canvas.channels;
-      const float* first = canvas.sums + block.y * stride + std::size_t{block.x} * canvas.channels;
+      const auto* first = pixels + block.y * stride + std::size_t{block.x} * canvas.channels;
       for (int y = 0; y < block.rows; ++y) __builtin_prefetch(first + y * stride, 1);
+    };
+    if (canvas.bytes == nullptr) {
+      fetch(canvas.sums);
+    } else {
+      fetch(canvas.bytes);
     }
     if (!planned(block)) return;
     const FoundTile& tile = tiles[block.tile];

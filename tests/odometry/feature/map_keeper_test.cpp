@@ -126,7 +126,7 @@ TEST_F(MapKeeperAtWork, ForgetsAtAnyMoment) {
 TEST_F(MapKeeperAtWork, TellsTheTrackingThreadWhatItsThreadHasThrown) {
   const std::size_t next = begin();
   // Its points claim to be seen from a keyframe that never was.
-  for (auto& [id, point] : keeper_.empty_map().points()) point.keyframes.push_back(1000);
+  for (MapPoint& point : keeper_.empty_map().points()) point.keyframes.push_back(1000);
   const Map& map = keeper_.refresh();
   const TrackResult tracked =
       tracker_.track(frames_[next].pyramid, map.newest().T_camera_vo, 3, map);

@@ -77,28 +77,30 @@ class MapperOverGround : public ::testing::Test {
 
 TEST_F(MapperOverGround, FindsNewPointsNearTheGround) {
   const std::size_t before = map_.points().size();
-  const int newest_before = map_.points().rbegin()->first;
+  int newest_before = 0;
+  for (const MapPoint& point : map_.points()) newest_before = point.id;
   mapper_.extend(frame_, tracked_, map_, timing_ms_);
   EXPECT_GT(map_.points().size(), before + 20);
-  for (auto i = map_.points().upper_bound(newest_before); i != map_.points().end(); ++i) {
+  for (const MapPoint& point : map_.points()) {
+    if (point.id <= newest_before) continue;
     // 200 m of height is 1; the relief is 5 m.
-    EXPECT_NEAR(i->second.position_vo.z(), 1.0, 0.06) << i->first;
-    EXPECT_GE(i->second.keyframes.size(), 2U);
+    EXPECT_NEAR(point.position_vo.z(), 1.0, 0.06) << point.id;
+    EXPECT_GE(point.keyframes.size(), 2U);
   }
 }
 
 TEST_F(MapperOverGround, DropsPointsThatAreSeldomWhereTheyShouldBe) {
   mapper_.extend(frame_, tracked_, map_, timing_ms_);
   auto point = map_.points().begin();
-  const int seldom = point->first;
-  point->second.expected = 20;
-  point->second.found = 4;
-  const int often = (++point)->first;
-  point->second.expected = 20;
-  point->second.found = 6;
-  const int young = (++point)->first;
-  point->second.expected = 8;
-  point->second.found = 0;
+  const int seldom = point->id;
+  point->expected = 20;
+  point->found = 4;
+  const int often = (++point)->id;
+  point->expected = 20;
+  point->found = 6;
+  const int young = (++point)->id;
+  point->expected = 8;
+  point->found = 0;
   mapper_.refine(orb_, map_, timing_ms_);
   EXPECT_EQ(map_.point(seldom), nullptr);
   EXPECT_NE(map_.point(often), nullptr);
