@@ -22,13 +22,13 @@ bool residual_of(const PinholeCamera& camera,
   return true;
 }
 
-/// Adds weight * J^T J to the lower triangle of H. Eigen's rankUpdate, made for large matrices,
-/// gives the same bits and takes five times as long.
+/// Adds weight * J^T J to H. Eigen's rankUpdate, made for large matrices, gives the same bits and
+/// takes five times as long.
 void add_weighted_square(const Matrix26d& J, double weight, Matrix6d& H) {
+  const Vector6d x = J.row(0);
+  const Vector6d y = J.row(1);
   for (int column = 0; column < 6; ++column) {
-    for (int row = column; row < 6; ++row) {
-      H(row, column) += weight * (J(0, row) * J(0, column) + J(1, row) * J(1, column));
-    }
+    H.col(column) += weight * (x * x[column] + y * y[column]);
   }
 }
 

@@ -81,9 +81,9 @@ std::map<std::string, std::string> FeatureOdometry::effective_parameters() const
 }
 
 FrameImage FeatureOdometry::image_of(const VoFrame& frame) const {
-  FrameImage image{frame.index, frame.t_ns, build_pyramid(parts_->rectifier.rectify(frame.image))};
-  if (parameters_.reject_saturated) image.pyramid.burnt = find_burnt(image.pyramid.level(0));
-  return image;
+  return {frame.index,
+          frame.t_ns,
+          build_pyramid(parts_->rectifier.rectify(frame.image), parameters_.reject_saturated)};
 }
 
 /// Whether the image repeats although the camera should have moved.

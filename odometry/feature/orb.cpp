@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
+
+#include "odometry/feature/fast_corners.hpp"
 
 namespace overfly::odometry::feature {
 namespace {
 
-constexpr int kCellPx = 32;
 /// FAST threshold of the last attempt on ground of low texture. Noise also exceeds it; whether
 /// there is enough texture is decided when a patch is made.
 constexpr int kFaintest = 2;
@@ -94,6 +94,15 @@ cv::Size level_size(const cv::Size& full, double scale) {
           static_cast<int>(std::lround(full.height / scale))};
 }
 
+/// Thresholds of FAST, of which the first that finds corners in a cell counts.
+std::vector<int> fast_thresholds(const FeatureParameters& parameters) {
+  std::vector<int> thresholds{parameters.ini_fast_threshold, parameters.min_fast_threshold};
+  if (parameters.low_texture) {
+    thresholds.push_back(std::min(kFaintest, parameters.min_fast_threshold));
+  }
+  return thresholds;
+}
+
 /// Whether a level is too small for a corner with the margin on both sides.
 bool too_small(const cv::Size& level) {
   return std::min(level.width, level.height) < 4 * kMarginPx;
@@ -175,32 +184,25 @@ std::vector<Corner> OrbExtractor::detect_level(int level, const CellGrid* wanted
   const Eigen::Array2d scale(static_cast<double>(levels_[0].cols) / image.cols,
                              static_cast<double>(levels_[0].rows) / image.rows);
   std::vector<std::vector<Corner>> cells;
-  std::vector<cv::KeyPoint> found;
-  for (int y = kMarginPx; y < image.rows - kMarginPx; y += kCellPx) {
-    for (int x = kMarginPx; x < image.cols - kMarginPx; x += kCellPx) {
-      const int width = std::min(kCellPx, image.cols - kMarginPx - x);
-      const int height = std::min(kCellPx, image.rows - kMarginPx - y);
+  const std::vector<int> thresholds = fast_thresholds(parameters_);
+  std::vector<FastCorner> found;
+  for (int y = kMarginPx; y < image.rows - kMarginPx; y += kFastCellPx) {
+    for (int x = kMarginPx; x < image.cols - kMarginPx; x += kFastCellPx) {
+      const int width = std::min(kFastCellPx, image.cols - kMarginPx - x);
+      const int height = std::min(kFastCellPx, image.rows - kMarginPx - y);
       if (wanted != nullptr && !wanted->any_marked(scale * Eigen::Array2d(x, y),
                                                    scale * Eigen::Array2d(x + width, y + height))) {
         continue;
       }
-      // FAST reads up to 3 px around a pixel.
-      const cv::Rect cell(x - 3, y - 3, width + 6, height + 6);
-      cv::FAST(image(cell), found, parameters_.ini_fast_threshold, true);
-      if (found.empty()) cv::FAST(image(cell), found, parameters_.min_fast_threshold, true);
-      if (found.empty() && parameters_.low_texture) {
-        cv::FAST(image(cell), found, std::min(kFaintest, parameters_.min_fast_threshold), true);
-      }
+      find_fast_corners(image, {x, y, width, height}, thresholds, found);
       std::vector<Corner>& corners = cells.emplace_back();
-      for (const cv::KeyPoint& keypoint : found) {
-        const Eigen::Vector2i pixel(static_cast<int>(keypoint.pt.x) + cell.x,
-                                    static_cast<int>(keypoint.pt.y) + cell.y);
-        if (!mask.empty() && mask.at<std::uint8_t>(pixel.y(), pixel.x()) == 0) continue;
+      for (const FastCorner& fast : found) {
+        if (!mask.empty() && mask.at<std::uint8_t>(fast.pixel) == 0) continue;
         Corner& corner = corners.emplace_back();
-        corner.level_pixel = pixel;
+        corner.level_pixel = {fast.pixel.x, fast.pixel.y};
         corner.pixel = (corner.level_pixel.cast<double>().array() + 0.5) * scale - 0.5;
         corner.scale_level = level;
-        corner.response = keypoint.response;
+        corner.response = static_cast<float>(fast.score);
       }
     }
   }

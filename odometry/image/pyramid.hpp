@@ -34,14 +34,12 @@ struct Pyramid {
   [[nodiscard]] const cv::Mat& level(int l) const { return levels[static_cast<std::size_t>(l)]; }
 };
 
-/// Finds saturated areas of a few cells and more, and adds one cell around them. Single white roofs
-/// and markings do not count.
-[[nodiscard]] cv::Mat find_burnt(const cv::Mat& image);
-
 inline constexpr int kPyramidLevels = 5;
 
 /// Builds up to kPyramidLevels levels; stops before a side becomes shorter than 32 px.
-[[nodiscard]] Pyramid build_pyramid(std::shared_ptr<const Image> image);
+/// @param mark_burnt  sets `burnt`: saturated areas of a few cells and more, and one cell around
+///                    them. Single white roofs and markings do not count.
+[[nodiscard]] Pyramid build_pyramid(std::shared_ptr<const Image> image, bool mark_burnt = false);
 
 /// Whether the image has visible texture: corners that remain after averaging. In the dark the
 /// finest level is full of noise corners.

@@ -6,14 +6,6 @@ using terrain::TileId;
 
 namespace {
 
-float value_at(const Bilinear4& f, float x, float y) {
-  return f[0] + f[1] * x + (f[2] + f[3] * x) * y;
-}
-
-Bilinear4 moved(const Bilinear4& f, float x, float y) {
-  return {value_at(f, x, y), f[1] + f[3] * y, f[2] + f[3] * x, f[3]};
-}
-
 /// A part of a block.
 Block part_of(const Block& block, int x, int y, int columns, int rows) {
   Block part = block;
@@ -60,13 +52,13 @@ void BlockPlaces::add(const Block& block) {
   const Extent extent = extent_of(block);
   const int levels = tiles_.grid().levels;
   const int level = std::clamp(static_cast<int>(std::floor(extent.low_lod)), 0, levels - 1);
-  const double texel = std::ldexp(1.0, level);  // in texels of level 0
+  const double texel = 1 << level;  // in texels of level 0
   const double side = terrain::kTileTexels * texel;
   const double col = std::floor(0.5 * (extent.low_u + extent.high_u) / side);
   const double row = std::floor(0.5 * (extent.low_v + extent.high_v) / side);
   // Half a texel of filtering at the coarsest mip level in use.
   const int mips = std::clamp(static_cast<int>(std::floor(extent.high_lod)) - level + 1, 0, 9);
-  const double margin = terrain::kTileBorder * texel - 0.5 * std::ldexp(texel, mips);
+  const double margin = terrain::kTileBorder * texel - 0.5 * texel * (1 << mips);
   const bool inside = extent.low_u >= col * side - margin && extent.low_v >= row * side - margin &&
                       extent.high_u <= (col + 1.0) * side + margin &&
                       extent.high_v <= (row + 1.0) * side + margin;

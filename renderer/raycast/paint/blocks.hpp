@@ -14,6 +14,15 @@ namespace overfly::renderer::raycast {
 /// c[0] + c[1] x + c[2] y + c[3] x y, with pixels relative to the block's first pixel.
 using Bilinear4 = std::array<float, 4>;
 
+inline float value_at(const Bilinear4& f, float x, float y) {
+  return f[0] + f[1] * x + (f[2] + f[3] * x) * y;
+}
+
+/// The function with its origin at (x, y).
+inline Bilinear4 moved(const Bilinear4& f, float x, float y) {
+  return {value_at(f, x, y), f[1] + f[3] * y, f[2] + f[3] * x, f[3]};
+}
+
 struct Block {
   enum class Kind : std::uint8_t { kGround, kVoid, kSky };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace overfly::renderer::raycast {
 
@@ -10,12 +9,8 @@ namespace {
 
 constexpr int kMaxValues = 3 * kBlockPixels;
 
-/// A bilinear function with a moved pixel origin.
-Bilinear4 moved_and_scaled(const Bilinear4& f, float x, float y, float scale) {
-  return {(f[0] + f[1] * x + (f[2] + f[3] * x) * y) * scale,
-          (f[1] + f[3] * y) * scale,
-          (f[2] + f[3] * x) * scale,
-          f[3] * scale};
+Bilinear4 scaled(const Bilinear4& f, float scale) {
+  return {f[0] * scale, f[1] * scale, f[2] * scale, f[3] * scale};
 }
 
 void fill(const Block& block, const Colour& colour, int channels, float* values) {
@@ -73,9 +68,9 @@ void add_sums(const Block& block, const float* values, const Canvas& canvas) {
   }
 }
 
-/// The block's place in its tile, moved by a part of a pixel.
-TexelBlock texels_of(const Block& block, const terrain::TileId& tile, float x, float y) {
-  const float per_texel = std::ldexp(1.0F, -tile.level);
+/// The block's place in its tile.
+TexelBlock texels_of(const Block& block, const terrain::TileId& tile) {
+  const float per_texel = 1.0F / static_cast<float>(1 << tile.level);
   const double side = static_cast<double>(terrain::kTileTexels) * (1 << tile.level);
   TexelBlock texels;
   texels.columns = block.columns;
@@ -84,12 +79,22 @@ TexelBlock texels_of(const Block& block, const terrain::TileId& tile, float x, f
               static_cast<float>(terrain::kTileBorder);
   texels.v0 = static_cast<float>((block.v - tile.row * side) * per_texel) +
               static_cast<float>(terrain::kTileBorder);
-  texels.numerator_u = moved_and_scaled(block.numerator_u, x, y, per_texel);
-  texels.numerator_v = moved_and_scaled(block.numerator_v, x, y, per_texel);
-  texels.inverse_depth = moved_and_scaled(block.inverse_depth, x, y, 1.0F);
-  texels.lod = moved_and_scaled(block.lod, x, y, 1.0F);
+  texels.numerator_u = scaled(block.numerator_u, per_texel);
+  texels.numerator_v = scaled(block.numerator_v, per_texel);
+  texels.inverse_depth = block.inverse_depth;
+  texels.lod = block.lod;
   texels.lod[0] -= static_cast<float>(tile.level);
   return texels;
+}
+
+/// As above, of the block moved by a part of a pixel.
+TexelBlock texels_of(const Block& block, const terrain::TileId& tile, float x, float y) {
+  Block other = block;
+  other.numerator_u = moved(block.numerator_u, x, y);
+  other.numerator_v = moved(block.numerator_v, x, y);
+  other.inverse_depth = moved(block.inverse_depth, x, y);
+  other.lod = moved(block.lod, x, y);
+  return texels_of(other, tile);
 }
 
 using Put = void (*)(const Block& block, const float* values, const Canvas& canvas);
@@ -130,7 +135,7 @@ void Painter::paint(const Band& band,
     }
     if (!planned(block)) return;
     const FoundTile& tile = tiles[block.tile];
-    kernel_.plan(texels_of(block, tile.id, 0.0F, 0.0F), *tile.texels, plans[i % 2]);
+    kernel_.plan(texels_of(block, tile.id), *tile.texels, plans[i % 2]);
   };
   const auto next_colour = [&](std::size_t i, float* values) {
     plan(i + 1);

@@ -1,10 +1,12 @@
-// The sampling kernel for machines with AVX2: eight pixels at a time, with the same operations in
-// the same order as the plain kernel, and therefore the same bits.
+// The sampling kernel for machines with AVX2 and FMA: eight pixels at a time, with the same
+// operations in the same order as the plain kernel, and therefore the same bits. A product and a
+// sum are one instruction only where the product is exact.
 //
 // The first step computes where all samples of a block lie, the second reads them. In one step the
 // processor would wait for each address, whose computation is a long chain.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -16,7 +18,7 @@
 
 #include <immintrin.h>
 
-#define OVERFLY_AVX2 __attribute__((target("avx2"), always_inline)) inline
+#define OVERFLY_AVX2 __attribute__((target("avx2,fma"), always_inline)) inline
 
 namespace overfly::renderer::raycast {
 
@@ -32,7 +34,7 @@ struct Tables {
   __m256 scale_x, scale_y, last_x, last_y;
 
   OVERFLY_AVX2 static Tables of(const PackedTile& tile) {
-    const auto ints = [](const auto& table) __attribute__((target("avx2"))) {
+    const auto ints = [](const auto& table) __attribute__((target("avx2,fma"))) {
       return _mm256_cvtepi32_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(table.data())));
     };
     return {ints(tile.offset),
@@ -65,16 +67,32 @@ struct Footprints {
   __m256 across, down;
 };
 
-/// A bilinear function along one row of pixels.
-struct RowLine {
-  __m256 first, step;
+/// The bilinear functions of a block, and their values along one row of pixels.
+class BlockLines {
+ public:
+  enum Function { kInverseDepth, kU, kV, kLod };
 
-  OVERFLY_AVX2 static RowLine of(const Bilinear4& f, float y) {
-    return {_mm256_set1_ps(f[0] + f[2] * y), _mm256_set1_ps(f[1] + f[3] * y)};
+  OVERFLY_AVX2 explicit BlockLines(const TexelBlock& block) {
+    const Bilinear4& w = block.inverse_depth;
+    const Bilinear4& u = block.numerator_u;
+    const Bilinear4& v = block.numerator_v;
+    const Bilinear4& lod = block.lod;
+    top_ = _mm256_setr_ps(w[0], u[0], v[0], lod[0], w[1], u[1], v[1], lod[1]);
+    down_ = _mm256_setr_ps(w[2], u[2], v[2], lod[2], w[3], u[3], v[3], lod[3]);
   }
-  [[nodiscard]] OVERFLY_AVX2 __m256 at(__m256 x) const {
-    return _mm256_add_ps(first, _mm256_mul_ps(step, x));
+  OVERFLY_AVX2 void select_row(int row) {
+    const __m256 y = _mm256_set1_ps(static_cast<float>(row));
+    _mm256_store_ps(line_, _mm256_add_ps(top_, _mm256_mul_ps(down_, y)));
   }
+  /// @param x  columns of eight pixels
+  [[nodiscard]] OVERFLY_AVX2 __m256 at(Function f, __m256 x) const {
+    return _mm256_add_ps(_mm256_broadcast_ss(line_ + f),
+                         _mm256_mul_ps(_mm256_broadcast_ss(line_ + 4 + f), x));
+  }
+
+ private:
+  __m256 top_, down_;
+  alignas(32) float line_[8];  ///< by function: at column 0, then the steps
 };
 
 OVERFLY_AVX2 __m256 clamped_lanes(__m256 value, __m256 last) {
@@ -85,15 +103,25 @@ OVERFLY_AVX2 __m256 whole(__m256 value) {
   return _mm256_round_ps(value, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 }
 
-/// @param at  the level of each pixel
-OVERFLY_AVX2 Footprints footprints(const Tables& at, __m256 u, __m256 v) {
+/// A coordinate in texels of a level, clamped to it.
+/// @tparam kExact  the scale is a power of two, so that its products are exact
+template <bool kExact>
+OVERFLY_AVX2 __m256 in_level(__m256 place, __m256 scale, __m256 last) {
   const __m256 half = _mm256_set1_ps(0.5F);
-  const __m256 s = clamped_lanes(_mm256_sub_ps(_mm256_mul_ps(u, at.scale_x), half), at.last_x);
-  const __m256 t = clamped_lanes(_mm256_sub_ps(_mm256_mul_ps(v, at.scale_y), half), at.last_y);
+  return clamped_lanes(kExact ? _mm256_fmsub_ps(place, scale, half)
+                              : _mm256_sub_ps(_mm256_mul_ps(place, scale), half),
+                       last);
+}
+
+/// @param at  the level of each pixel
+template <bool kExact>
+OVERFLY_AVX2 Footprints footprints(const Tables& at, __m256 u, __m256 v) {
+  const __m256 s = in_level<kExact>(u, at.scale_x, at.last_x);
+  const __m256 t = in_level<kExact>(v, at.scale_y, at.last_y);
   const __m256 column = whole(s);
   const __m256 row = whole(t);
-  const __m256 element =
-      _mm256_add_ps(at.offset, _mm256_add_ps(_mm256_mul_ps(row, at.stride), column));
+  // Indices are exact.
+  const __m256 element = _mm256_fmadd_ps(row, at.stride, _mm256_add_ps(at.offset, column));
   return {_mm256_cvttps_epi32(element), _mm256_sub_ps(s, column), _mm256_sub_ps(t, row)};
 }
 
@@ -107,9 +135,15 @@ OVERFLY_AVX2 __m256i rounded_share(__m256 share, int one) {
       _mm256_mul_ps(share, _mm256_set1_ps(static_cast<float>(one))), _mm256_set1_ps(0.5F)));
 }
 
+/// As rounded_share. The product with a power of two is exact.
+OVERFLY_AVX2 __m256i rounded_exact_share(__m256 share, int one) {
+  return _mm256_cvttps_epi32(
+      _mm256_fmadd_ps(share, _mm256_set1_ps(static_cast<float>(one)), _mm256_set1_ps(0.5F)));
+}
+
 OVERFLY_AVX2 Weights weights(const Footprints& at) {
   const __m256i down = rounded_share(at.down, kRowOne);
-  const __m256i across = rounded_share(at.across, kColumnOne);
+  const __m256i across = rounded_exact_share(at.across, kColumnOne);
   static_assert(kRowOne == 127);  // 127 - down = 127 ^ down
   const __m256i repeated =
       _mm256_shuffle_epi8(down,
@@ -170,7 +204,7 @@ OVERFLY_AVX2 __m256 column_of(__m256i pairs, __m256 down) {
 /// Two neighbouring elements of 4 bytes for each of four pixels: of the first two pixels in the low
 /// half, of the others in the high half.
 OVERFLY_AVX2 __m256 neighbours_at(const std::uint32_t* first, int a, int b, int c, int d) {
-  const auto two = [&](int low, int high) __attribute__((target("avx2"))) {
+  const auto two = [&](int low, int high) __attribute__((target("avx2,fma"))) {
     const __m128i pair = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first + low));
     return _mm_castpd_ps(
         _mm_loadh_pd(_mm_castsi128_pd(pair), reinterpret_cast<const double*>(first + high)));
@@ -196,7 +230,7 @@ OVERFLY_AVX2 __m256 blend(__m256 a, __m256 b, __m256 share) {
   return _mm256_add_ps(a, _mm256_mul_ps(share, _mm256_sub_ps(b, a)));
 }
 
-/// The mip levels used by a block's pixels.
+/// The mip levels used by a block's pixels. The scales of all but `kAny` are powers of two.
 enum class Mips {
   kFirst,  ///< all only the first one
   kTwo,    ///< all the same two
@@ -212,7 +246,15 @@ struct BlockMips {
 /// Rounding changes a level of detail by far less than this.
 constexpr float kLodSlack = 1e-3F;
 
-BlockMips mips_of(const TexelBlock& block) {
+/// Whether the scales of a mip level are powers of two.
+bool exact_scale(const PackedTile& tile, int mip) {
+  constexpr std::uint32_t kFraction = (1U << 23U) - 1U;
+  return ((std::bit_cast<std::uint32_t>(tile.scale_x[mip]) |
+           std::bit_cast<std::uint32_t>(tile.scale_y[mip])) &
+          kFraction) == 0;
+}
+
+BlockMips mips_of(const TexelBlock& block, const PackedTile& tile) {
   const auto x = static_cast<float>(block.columns - 1);
   const auto y = static_cast<float>(block.rows - 1);
   const Bilinear4& f = block.lod;
@@ -221,10 +263,12 @@ BlockMips mips_of(const TexelBlock& block) {
   const float both = east + (f[2] + f[3] * x) * y;
   const float low = std::min(std::min(f[0], east), std::min(south, both)) - kLodSlack;
   const float high = std::max(std::max(f[0], east), std::max(south, both)) + kLodSlack;
-  if (high <= 0.0F) return {Mips::kFirst, 0};
+  if (high <= 0.0F && exact_scale(tile, 0)) return {Mips::kFirst, 0};
   if (!(low > 0.0F && high < static_cast<float>(kPackedMips - 1))) return {};
   const int first = static_cast<int>(low);
-  return first == static_cast<int>(high) ? BlockMips{Mips::kTwo, first} : BlockMips{};
+  const bool two =
+      first == static_cast<int>(high) && exact_scale(tile, first) && exact_scale(tile, first + 1);
+  return two ? BlockMips{Mips::kTwo, first} : BlockMips{};
 }
 
 /// Asks for the cache lines of the texels of a block's border. A line of texels enters and leaves
@@ -238,20 +282,21 @@ struct Fetch {
     if constexpr (kWide) first = tile.wide_pairs.data();
     return {static_cast<const char*>(first), tile.planes, kBytes * tile.plane_elements};
   }
-  /// @param count  of pixels, in [1, 8]
-  /// @param every  all of them, else the first and, if `last`, the last
-  OVERFLY_AVX2 void ask(const std::int32_t* elements, int count, bool every, bool last) const {
+  /// @param columns  of the row
+  /// @param all  the whole row, else its two ends
+  OVERFLY_AVX2 void ask(const std::int32_t* elements, int columns, bool all) const {
     for (int plane = 0; plane < planes; ++plane) {
       const char* from = first + static_cast<std::size_t>(plane) * plane_bytes;
       const auto line = [&](int i) {
         // As _mm_prefetch. GCC 12 removes calls of functions that use nothing but that.
         asm volatile("prefetcht0 %0" : : "m"(from[kBytes * static_cast<std::size_t>(elements[i])]));
       };
-      if (every) {
-        for (int i = 0; i < count; ++i) line(i);
+      if (all) {
+        for (int i = 0; i < columns; ++i) line(i);
       } else {
         line(0);
-        if (last) line(count - 1);
+        line(8 * ((columns - 1) / 8));
+        line(columns - 1);
       }
     }
   }
@@ -262,10 +307,11 @@ struct Fetch {
 };
 
 template <Mips kMips, bool kWide>
-__attribute__((target("avx2"))) void plan_samples(const TexelBlock& block,
-                                                  const PackedTile& tile,
-                                                  int first_mip,
-                                                  SamplePlan& plan) {
+__attribute__((target("avx2,fma"))) void plan_samples(const TexelBlock& block,
+                                                      const PackedTile& tile,
+                                                      int first_mip,
+                                                      SamplePlan& plan) {
+  constexpr bool kExact = kMips != Mips::kAny;
   const Tables tables = Tables::of(tile);
   const Tables tables_a = Tables::at_mip(tile, first_mip);
   const Tables tables_b = Tables::at_mip(tile, std::min(first_mip + 1, kPackedMips - 1));
@@ -273,45 +319,44 @@ __attribute__((target("avx2"))) void plan_samples(const TexelBlock& block,
   const __m256 last_mip = _mm256_set1_ps(static_cast<float>(kPackedMips - 1));
   const __m256 u0 = _mm256_set1_ps(block.u0);
   const __m256 v0 = _mm256_set1_ps(block.v0);
+  BlockLines lines(block);
+  const auto plan_eight = [&](int pixel, __m256 x)
+      __attribute__((target("avx2,fma"), always_inline)) {
+    const __m256 depth =
+        _mm256_div_ps(_mm256_set1_ps(1.0F), lines.at(BlockLines::kInverseDepth, x));
+    const __m256 u = _mm256_add_ps(u0, _mm256_mul_ps(lines.at(BlockLines::kU, x), depth));
+    const __m256 v = _mm256_add_ps(v0, _mm256_mul_ps(lines.at(BlockLines::kV, x), depth));
+    if constexpr (kMips == Mips::kAny) {
+      const __m256 lod = clamped_lanes(lines.at(BlockLines::kLod, x), last_mip);
+      const __m256i mip = _mm256_cvttps_epi32(lod);
+      _mm256_store_ps(&plan.between[pixel], _mm256_sub_ps(lod, _mm256_cvtepi32_ps(mip)));
+      const __m256i next = _mm256_min_epi32(_mm256_add_epi32(mip, _mm256_set1_epi32(1)),
+                                            _mm256_set1_epi32(kPackedMips - 1));
+      keep<kWide>(footprints<kExact>(tables.permuted(mip), u, v), pixel, plan.fine);
+      keep<kWide>(footprints<kExact>(tables.permuted(next), u, v), pixel, plan.coarse);
+    } else {
+      keep<kWide>(footprints<kExact>(tables_a, u, v), pixel, plan.fine);
+      if constexpr (kMips == Mips::kTwo) {
+        _mm256_store_ps(&plan.between[pixel],
+                        _mm256_sub_ps(lines.at(BlockLines::kLod, x),
+                                      _mm256_set1_ps(static_cast<float>(first_mip))));
+        keep<kWide>(footprints<kExact>(tables_b, u, v), pixel, plan.coarse);
+      }
+    }
+  };
+  const __m256 left = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256 right = _mm256_setr_ps(8, 9, 10, 11, 12, 13, 14, 15);
+  static_assert(kBlockSide == 16);
   const int rows = block.rows;
   const int columns = block.columns;
   for (int row = 0; row < rows; ++row) {
-    const auto y = static_cast<float>(row);
-    const RowLine inverse_depth = RowLine::of(block.inverse_depth, y);
-    const RowLine numerator_u = RowLine::of(block.numerator_u, y);
-    const RowLine numerator_v = RowLine::of(block.numerator_v, y);
-    const RowLine lods = RowLine::of(block.lod, y);
+    lines.select_row(row);
+    const int pixel = row * kBlockSide;
+    plan_eight(pixel, left);
+    if (columns > 8) plan_eight(pixel + 8, right);
     const bool border = row == 0 || row == rows - 1;
-    for (int column = 0; column < columns; column += 8) {
-      const int pixel = row * kBlockSide + column;
-      const int count = std::min(columns - column, 8);
-      const bool last = column + 8 >= columns;
-      const __m256 x = _mm256_add_ps(_mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7),
-                                     _mm256_set1_ps(static_cast<float>(column)));
-      const __m256 depth = _mm256_div_ps(_mm256_set1_ps(1.0F), inverse_depth.at(x));
-      const __m256 u = _mm256_add_ps(u0, _mm256_mul_ps(numerator_u.at(x), depth));
-      const __m256 v = _mm256_add_ps(v0, _mm256_mul_ps(numerator_v.at(x), depth));
-      if constexpr (kMips == Mips::kAny) {
-        const __m256 lod = clamped_lanes(lods.at(x), last_mip);
-        const __m256i mip = _mm256_cvttps_epi32(lod);
-        _mm256_store_ps(&plan.between[pixel], _mm256_sub_ps(lod, _mm256_cvtepi32_ps(mip)));
-        const __m256i next = _mm256_min_epi32(_mm256_add_epi32(mip, _mm256_set1_epi32(1)),
-                                              _mm256_set1_epi32(kPackedMips - 1));
-        keep<kWide>(footprints(tables.permuted(mip), u, v), pixel, plan.fine);
-        keep<kWide>(footprints(tables.permuted(next), u, v), pixel, plan.coarse);
-      } else {
-        keep<kWide>(footprints(tables_a, u, v), pixel, plan.fine);
-        if constexpr (kMips == Mips::kTwo) {
-          _mm256_store_ps(&plan.between[pixel],
-                          _mm256_sub_ps(lods.at(x), _mm256_set1_ps(static_cast<float>(first_mip))));
-          keep<kWide>(footprints(tables_b, u, v), pixel, plan.coarse);
-        }
-      }
-      fetch.ask(&plan.fine.element[pixel], count, border, last);
-      if constexpr (kMips != Mips::kFirst) {
-        fetch.ask(&plan.coarse.element[pixel], count, border, last);
-      }
-    }
+    fetch.ask(&plan.fine.element[pixel], columns, border);
+    if constexpr (kMips != Mips::kFirst) fetch.ask(&plan.coarse.element[pixel], columns, border);
   }
 }
 
@@ -330,19 +375,19 @@ OVERFLY_AVX2 void read_plane(const SamplePlan& plan, const ReadEight& samples, f
   }
 }
 
-__attribute__((target("avx2"))) void read_avx2(const SamplePlan& plan, float* out) {
+__attribute__((target("avx2,fma"))) void read_avx2(const SamplePlan& plan, float* out) {
   const PackedTile& tile = *plan.tile;
   for (int plane = 0; plane < tile.planes; ++plane, out += kBlockPixels) {
     const std::size_t first = plane * tile.plane_elements;
     if (tile.wide) {
       const std::uint32_t* pairs = &tile.wide_pairs[first];
-      const auto samples = [=](int pixel, const Level& at) __attribute__((target("avx2"))) {
+      const auto samples = [=](int pixel, const Level& at) __attribute__((target("avx2,fma"))) {
         return wide_samples(pairs, pixel, at);
       };
       read_plane(plan, samples, out);
     } else {
       const std::uint16_t* pairs = &tile.pairs[first];
-      const auto samples = [=](int pixel, const Level& at) __attribute__((target("avx2"))) {
+      const auto samples = [=](int pixel, const Level& at) __attribute__((target("avx2,fma"))) {
         return narrow_samples(pairs, pixel, at);
       };
       read_plane(plan, samples, out);
@@ -353,7 +398,7 @@ __attribute__((target("avx2"))) void read_avx2(const SamplePlan& plan, float* ou
 void plan_avx2(const TexelBlock& block, const PackedTile& tile, SamplePlan& plan) {
   plan.block = block;
   plan.tile = &tile;
-  const BlockMips block_mips = mips_of(block);
+  const BlockMips block_mips = mips_of(block, tile);
   plan.first_mip_only = block_mips.mips == Mips::kFirst;
   const auto plan_as = [&]<Mips kMips>(int first_mip) {
     if (tile.wide) return plan_samples<kMips, true>(block, tile, first_mip, plan);
@@ -373,7 +418,8 @@ void plan_avx2(const TexelBlock& block, const PackedTile& tile, SamplePlan& plan
 
 const SampleKernel& best_sample_kernel() {
   static constexpr SampleKernel kKernel{"avx2", plan_avx2, read_avx2};
-  return __builtin_cpu_supports("avx2") ? kKernel : plain_sample_kernel();
+  const bool supported = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return supported ? kKernel : plain_sample_kernel();
 }
 
 }  // namespace overfly::renderer::raycast

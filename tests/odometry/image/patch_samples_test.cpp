@@ -8,19 +8,12 @@
 #include <random>
 #include <vector>
 
+#include "tests/odometry/random_image.hpp"
+
 namespace overfly::odometry {
 namespace {
 
-cv::Mat random_image(int columns, int rows) {
-  std::mt19937 generator(5);
-  cv::Mat image(rows, columns, CV_8U);
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(generator());
-    }
-  }
-  return image;
-}
+using testing::random_image;
 
 /// Whether all samples of the warp lie in the image.
 bool inside(const SampledWarp& warp, const cv::Mat& image) {
@@ -74,7 +67,7 @@ TEST(PatchSamples, EveryInstructionSetGivesTheSameBits) {
   if (best_patch_sampler().name == plain_patch_sampler().name) {
     GTEST_SKIP() << "this machine has no vector instructions that are used";
   }
-  const cv::Mat image = random_image(97, 83);
+  const cv::Mat image = random_image(97, 83, 5);
   std::mt19937 generator(7);
   std::uniform_real_distribution<float> share(0.0F, 1.0F);
   int compared = 0;

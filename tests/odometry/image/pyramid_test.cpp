@@ -19,11 +19,10 @@ TEST(Burnt, AreasAreFoundAndWhiteRoofsAreNot) {
     }
   };
   for (int roof = 0; roof < 30; ++roof) paint(10 + 20 * roof, 20, 14);
-  EXPECT_TRUE(build_pyramid(image).burnt.empty());
-  Pyramid pyramid = build_pyramid(image);
-  EXPECT_TRUE(find_burnt(pyramid.level(0)).empty());
+  EXPECT_TRUE(build_pyramid(image, true).burnt.empty());
   paint(300, 200, 100);
-  pyramid.burnt = find_burnt(pyramid.level(0));
+  EXPECT_TRUE(build_pyramid(image).burnt.empty());
+  const Pyramid pyramid = build_pyramid(image, true);
   EXPECT_TRUE(pyramid.burnt_at({350.0, 250.0}));
   EXPECT_TRUE(pyramid.burnt_at({300.0, 200.0}));
   EXPECT_TRUE(pyramid.burnt_at({399.0, 299.0}));
