@@ -94,48 +94,78 @@ OVERFLY_AVX2 __m256 mean_of_pairs(__m256i pairs, __m256 share_left, __m256 share
   return _mm256_add_ps(_mm256_mul_ps(share_left, left), _mm256_mul_ps(share_right, right));
 }
 
-/// Eight samples of a line, of which the first `kCount` are valid.
-/// @param step  their numbers in the line
-template <int kCount>
-OVERFLY_AVX2 __m256
-eight_samples(const cv::Mat& image, const SampledWarp& warp, const LineStart& start, __m256 step) {
+/// Where the samples of a patch lie: computed before any is read, so that the processor reads many
+/// at once.
+struct SamplePlaces {
+  static constexpr std::size_t kCount = std::size_t{kBorderSide} * kSampleLine;
+
+  alignas(32) std::int32_t offset[kCount];  ///< of the upper left pixel [bytes]
+  alignas(32) float across[kCount];
+  alignas(32) float down[kCount];
+};
+
+__attribute__((target("avx2"))) void find_places(const cv::Mat& image,
+                                                 const SampledWarp& warp,
+                                                 SamplePlaces& places) {
   const __m256 one = _mm256_set1_ps(1.0F);
-  const __m256 depth =
-      _mm256_add_ps(_mm256_set1_ps(start.depth), _mm256_mul_ps(step, _mm256_set1_ps(warp.g.x())));
-  const __m256 scale = _mm256_div_ps(one, depth);
-  const auto place = [&](int axis) __attribute__((target("avx2"))) {
-    const __m256 numerator = _mm256_add_ps(_mm256_set1_ps(start.place[axis]),
-                                           _mm256_mul_ps(step, _mm256_set1_ps(warp.A(axis, 0))));
-    return _mm256_add_ps(_mm256_set1_ps(warp.centre[axis]), _mm256_mul_ps(scale, numerator));
-  };
-  const __m256 x = place(0);
-  const __m256 y = place(1);
-  const __m256i x0 = _mm256_min_epi32(_mm256_cvttps_epi32(x), _mm256_set1_epi32(image.cols - 2));
-  const __m256i y0 = _mm256_min_epi32(_mm256_cvttps_epi32(y), _mm256_set1_epi32(image.rows - 2));
-  const __m256 ax = _mm256_sub_ps(x, _mm256_cvtepi32_ps(x0));
-  const __m256 ay = _mm256_sub_ps(y, _mm256_cvtepi32_ps(y0));
+  const __m256 g = _mm256_set1_ps(warp.g.x());
+  const __m256 a_x = _mm256_set1_ps(warp.A(0, 0));
+  const __m256 a_y = _mm256_set1_ps(warp.A(1, 0));
+  const __m256 centre_x = _mm256_set1_ps(warp.centre.x());
+  const __m256 centre_y = _mm256_set1_ps(warp.centre.y());
+  const __m256i last_x = _mm256_set1_epi32(image.cols - 2);
+  const __m256i last_y = _mm256_set1_epi32(image.rows - 2);
   const __m256i stride = _mm256_set1_epi32(static_cast<std::int32_t>(image.step[0]));
-  alignas(32) std::int32_t offsets[8];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(offsets),
-                     _mm256_add_epi32(_mm256_mullo_epi32(y0, stride), x0));
-  const __m256 left = _mm256_sub_ps(one, ax);
-  const __m256 top = mean_of_pairs(pairs_at<kCount>(image.data, offsets), left, ax);
+  __m256 steps = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+  for (int half = 0; half < kSampleLine; half += 8) {
+    const __m256 more_depth = _mm256_mul_ps(steps, g);
+    const __m256 more_x = _mm256_mul_ps(steps, a_x);
+    const __m256 more_y = _mm256_mul_ps(steps, a_y);
+    for (int row = 0; row < kBorderSide; ++row) {
+      const LineStart start(warp, row);
+      const __m256 scale =
+          _mm256_div_ps(one, _mm256_add_ps(_mm256_set1_ps(start.depth), more_depth));
+      const __m256 numerator_x = _mm256_add_ps(_mm256_set1_ps(start.place.x()), more_x);
+      const __m256 numerator_y = _mm256_add_ps(_mm256_set1_ps(start.place.y()), more_y);
+      const __m256 x = _mm256_add_ps(centre_x, _mm256_mul_ps(scale, numerator_x));
+      const __m256 y = _mm256_add_ps(centre_y, _mm256_mul_ps(scale, numerator_y));
+      const __m256i x0 = _mm256_min_epi32(_mm256_cvttps_epi32(x), last_x);
+      const __m256i y0 = _mm256_min_epi32(_mm256_cvttps_epi32(y), last_y);
+      const int i = row * kSampleLine + half;
+      _mm256_store_si256(reinterpret_cast<__m256i*>(places.offset + i),
+                         _mm256_add_epi32(_mm256_mullo_epi32(y0, stride), x0));
+      _mm256_store_ps(places.across + i, _mm256_sub_ps(x, _mm256_cvtepi32_ps(x0)));
+      _mm256_store_ps(places.down + i, _mm256_sub_ps(y, _mm256_cvtepi32_ps(y0)));
+    }
+    steps = _mm256_add_ps(steps, _mm256_set1_ps(8.0F));
+  }
+}
+
+/// Eight samples, of which the first `kCount` are valid. @param first  of the places
+template <int kCount>
+OVERFLY_AVX2 __m256 eight_samples(const cv::Mat& image, const SamplePlaces& places, int first) {
+  const __m256 one = _mm256_set1_ps(1.0F);
+  const __m256 right = _mm256_load_ps(places.across + first);
+  const __m256 left = _mm256_sub_ps(one, right);
+  const __m256 low = _mm256_load_ps(places.down + first);
+  const std::int32_t* offsets = places.offset + first;
+  const __m256 top = mean_of_pairs(pairs_at<kCount>(image.data, offsets), left, right);
   const __m256 bottom =
-      mean_of_pairs(pairs_at<kCount>(image.data + image.step[0], offsets), left, ax);
-  return _mm256_add_ps(_mm256_mul_ps(_mm256_sub_ps(one, ay), top), _mm256_mul_ps(ay, bottom));
+      mean_of_pairs(pairs_at<kCount>(image.data + image.step[0], offsets), left, right);
+  return _mm256_add_ps(_mm256_mul_ps(_mm256_sub_ps(one, low), top), _mm256_mul_ps(low, bottom));
 }
 
 __attribute__((target("avx2"))) void warped_avx2(const cv::Mat& image,
                                                  const SampledWarp& warp,
                                                  BorderPatch& patch) {
   static_assert(kSampleLine == 16);
-  const __m256 steps = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
-  const __m256 later_steps = _mm256_add_ps(steps, _mm256_set1_ps(8.0F));
+  SamplePlaces places;
+  find_places(image, warp, places);
   float* out = patch.data();
   for (int row = 0; row < kBorderSide; ++row, out += kBorderSide) {
-    const LineStart start(warp, row);
-    _mm256_storeu_ps(out, eight_samples<8>(image, warp, start, steps));
-    _mm256_storeu_ps(out + 8, eight_samples<kBorderSide - 8>(image, warp, start, later_steps));
+    const int first = row * kSampleLine;
+    _mm256_storeu_ps(out, eight_samples<8>(image, places, first));
+    _mm256_storeu_ps(out + 8, eight_samples<kBorderSide - 8>(image, places, first + 8));
   }
 }
 
