@@ -120,7 +120,7 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
                                  to});
     const double end = std::max(out, t + 1e-9 * (1.0 + t));
     const double lowest = ray.height + ray.d_height * (ray.d_height < 0.0 ? end : t);
-    if (lowest > tile.highest(k, column, row)) {
+    if (lowest > tile.highest_m.at(k, column, row)) {
       t = end;
       passed = true;
     } else if (k > 0) {
@@ -302,12 +302,12 @@ double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m
     const double cells = size_m * node->tile->per_m;
     if (cells <= 2.0) {
       // Close to a kink the deviation decreases with the size.
-      return node->tile->deviation(1, column, row) * 0.5 * cells;
+      return node->tile->deviation_m.at(1, column, row) * 0.5 * cells;
     }
     if (cells <= kTileCells || node->parent < 0) {
       int k = 1;
       while (k < kLog2TileCells && (1 << k) < cells) ++k;
-      return node->tile->deviation(k, column, row);
+      return node->tile->deviation_m.at(k, column, row);
     }
     const GroundNode& parent = tree.nodes[node->parent];
     const bool east = node->east_m > parent.east_m;

@@ -14,7 +14,7 @@ constexpr double kNearestM = 0.5;
 /// Lowest and highest up coordinate of a tile's ground, with a margin for relief between its posts.
 Eigen::Vector2d height_bounds(const HeightTile& tile, double relief_m) {
   const double low_m = tile.up_m + tile.lowest_m;
-  const double high_m = tile.up_m + tile.highest_m.back().front();
+  const double high_m = tile.up_m + tile.highest_m.whole();
   const double side_m = tile.id.side_m();
   const double margin_m = std::min(relief_m, std::max(0.5 * (high_m - low_m), 0.1 * side_m)) + 0.5;
   return {low_m - margin_m, high_m + margin_m};
@@ -58,7 +58,7 @@ bool HeightField::fine_enough(const HeightTile& tile, const ViewSweep& view) con
   const double side_m = tile.id.side_m();
   const Eigen::Vector3d low(tile.east_m, tile.north_m, tile.up_m + tile.lowest_m);
   const Eigen::Vector3d high(
-      tile.east_m + side_m, tile.north_m + side_m, tile.up_m + tile.highest_m.back().front());
+      tile.east_m + side_m, tile.north_m + side_m, tile.up_m + tile.highest_m.whole());
   const Eigen::Vector3d away =
       (low - view.position).cwiseMax(view.position - high).cwiseMax(Eigen::Vector3d::Zero());
   const double px_per_m = view.px_per_rad / std::max(away.norm() - view.slack_m, kNearestM);
@@ -82,7 +82,7 @@ std::int32_t HeightField::visit(const HeightTileId& id,
   node.parent = parent;
   node.leaf = fine_enough(here, view);
   tree_.nodes.push_back(node);
-  double highest_m = here.up_m + here.highest_m.back().front();
+  double highest_m = here.up_m + here.highest_m.whole();
   if (node.leaf) {
     tree_.steepest = std::max<double>(tree_.steepest, here.steepest);
   } else {

@@ -58,7 +58,6 @@ void sample_posts(HeightTile& tile, const TexelMap& map) {
     corners[i] = sampler.find(at, map.origin_map_m + map.map_per_world * at).map_m;
   }
   std::array<double, kTilePosts * kTilePosts> up_m{};
-  tile.texels.resize(up_m.size());
   tile.texel = map.texel_from_map(0.25 * (corners[0] + corners[1] + corners[2] + corners[3]));
   for (int row = 0; row < kTilePosts; ++row) {
     const double b = static_cast<double>(row) / kTileCells;
@@ -69,38 +68,40 @@ void sample_posts(HeightTile& tile, const TexelMap& map) {
       const Post post = sampler.find(world(column, row), guess_m);
       const std::size_t i = static_cast<std::size_t>(row) * kTilePosts + column;
       up_m[i] = post.up_m;
-      tile.texels[i] = (map.texel_from_map(post.map_m) - tile.texel).cast<float>();
+      tile.posts[i].texel = (map.texel_from_map(post.map_m) - tile.texel).cast<float>();
     }
   }
   tile.up_m = up_m[up_m.size() / 2];
-  std::transform(up_m.begin(), up_m.end(), tile.height_m.begin(), [&](double up) {
-    return static_cast<float>(up - tile.up_m);
-  });
+  for (std::size_t i = 0; i < up_m.size(); ++i) {
+    tile.posts[i].height_m = static_cast<float>(up_m[i] - tile.up_m);
+  }
 }
 
 void measure_heights(HeightTile& tile) {
-  tile.lowest_m = *std::min_element(tile.height_m.begin(), tile.height_m.end());
+  tile.lowest_m = tile.posts[0].height_m;
+  for (const GroundPost& post : tile.posts) tile.lowest_m = std::min(tile.lowest_m, post.height_m);
   float steepest_east = 0.0F, steepest_north = 0.0F;
-  std::vector<float>& cells = tile.highest_m[0];
-  cells.reserve(kTileCells * kTileCells);
   for (int row = 0; row < kTileCells; ++row) {
     for (int column = 0; column < kTileCells; ++column) {
       const float sw = tile.height(column, row), se = tile.height(column + 1, row);
       const float nw = tile.height(column, row + 1), ne = tile.height(column + 1, row + 1);
-      cells.push_back(std::max({sw, se, nw, ne}));
+      tile.highest_m.set(0, column, row, std::max({sw, se, nw, ne}));
       steepest_east = std::max({steepest_east, std::abs(se - sw), std::abs(ne - nw)});
       steepest_north = std::max({steepest_north, std::abs(nw - sw), std::abs(ne - se)});
     }
   }
   tile.steepest = std::hypot(steepest_east, steepest_north) / static_cast<float>(tile.spacing_m);
   for (int k = 1; k <= kLog2TileCells; ++k) {
-    const int side = kTileCells >> k;
-    for (int row = 0; row < side; ++row) {
-      for (int column = 0; column < side; ++column) {
-        const std::vector<float>& finer = tile.highest_m[k - 1];
-        const std::size_t at = static_cast<std::size_t>(2 * row) * (2 * side) + 2 * column;
-        tile.highest_m[k].push_back(
-            std::max({finer[at], finer[at + 1], finer[at + 2 * side], finer[at + 2 * side + 1]}));
+    const int half = 1 << (k - 1);
+    for (int row = 0; row < kTileCells; row += 2 * half) {
+      for (int column = 0; column < kTileCells; column += 2 * half) {
+        tile.highest_m.set(k,
+                           column,
+                           row,
+                           std::max({tile.highest_m.at(k - 1, column, row),
+                                     tile.highest_m.at(k - 1, column + half, row),
+                                     tile.highest_m.at(k - 1, column, row + half),
+                                     tile.highest_m.at(k - 1, column + half, row + half)}));
       }
     }
   }
@@ -116,9 +117,9 @@ float square_deviation(const HeightTile& tile, int column, int row, int cells) {
     const float b = static_cast<float>(j) * scale;
     const float west = sw + b * (nw - sw);
     const float slope = (se + b * (ne - se) - west) * scale;
-    const float* heights = &tile.height_m[static_cast<std::size_t>(row + j) * kTilePosts + column];
+    const GroundPost* posts = &tile.post(column, row + j);
     for (int i = 0; i <= cells; ++i) {
-      worst = std::max(worst, std::abs(heights[i] - (west + slope * static_cast<float>(i))));
+      worst = std::max(worst, std::abs(posts[i].height_m - (west + slope * static_cast<float>(i))));
     }
   }
   return worst;
@@ -129,16 +130,15 @@ void measure_deviations(HeightTile& tile) {
     const int cells = 1 << k;
     for (int row = 0; row < kTileCells; row += cells) {
       for (int column = 0; column < kTileCells; column += cells) {
-        tile.deviation_m[k].push_back(square_deviation(tile, column, row, cells));
+        tile.deviation_m.set(k, column, row, square_deviation(tile, column, row, cells));
       }
     }
   }
   // Between the posts: cells half as long as those of k = 1 have half the deviation of a kinked
   // surface, and a quarter of that of a smooth one.
-  for (int row = 0; row < kTileCells; ++row) {
-    for (int column = 0; column < kTileCells; ++column) {
-      tile.deviation_m[0].push_back(0.5F * tile.deviation(1, column, row));
-      tile.hidden_m = std::max(tile.hidden_m, tile.deviation_m[0].back());
+  for (int row = 0; row < kTileCells; row += 2) {
+    for (int column = 0; column < kTileCells; column += 2) {
+      tile.hidden_m = std::max(tile.hidden_m, 0.5F * tile.deviation_m.at(1, column, row));
     }
   }
 }

@@ -47,39 +47,81 @@ struct TexelMap {
   }
 };
 
+/// One value for each square of 2^k cells a side of a tile, from kFinest to the whole tile. The
+/// coarsest come first, and the four parts of a square are neighbours, in Morton's order: what a
+/// ray reads on its way down to a cell lies together in memory.
+template <int kFinest>
+class SquareTable {
+ public:
+  /// @param column, row  of a cell of the square
+  [[nodiscard]] float at(int k, int column, int row) const {
+    return values_[index(k, column, row)];
+  }
+  void set(int k, int column, int row, float value) { values_[index(k, column, row)] = value; }
+  /// The value of the whole tile.
+  [[nodiscard]] float whole() const { return values_[0]; }
+
+ private:
+  /// The bits of a cell's column, with a zero before each.
+  static constexpr auto kSpread = [] {
+    std::array<std::uint16_t, kTileCells> spread{};
+    for (unsigned i = 0; i < kTileCells; ++i) {
+      for (unsigned bit = 0; bit < kLog2TileCells; ++bit) {
+        spread[i] |= static_cast<std::uint16_t>((i >> bit & 1U) << (2 * bit));
+      }
+    }
+    return spread;
+  }();
+  /// Number of squares larger than those of 2^k cells a side.
+  static constexpr auto kLarger = [] {
+    std::array<std::uint16_t, kLog2TileCells + 2> larger{};
+    for (int k = kLog2TileCells; k-- > 0;) {
+      larger[k] = static_cast<std::uint16_t>(4 * larger[k + 1] + 1);
+    }
+    return larger;
+  }();
+  static std::size_t index(int k, int column, int row) {
+    const unsigned cell = kSpread[column] | static_cast<unsigned>(kSpread[row]) << 1U;
+    return kLarger[k] + (cell >> (2 * k));
+  }
+
+  static constexpr std::size_t kCount =
+      kFinest == 0 ? 4 * std::size_t{kLarger[0]} + 1 : std::size_t{kLarger[kFinest - 1]};
+  std::array<float, kCount> values_{};
+};
+
+/// A corner of cells. Height and place side by side: a hit needs both.
+struct GroundPost {
+  float height_m = 0.0F;              ///< above the tile's up_m
+  Eigen::Vector2f texel{0.0F, 0.0F};  ///< relative to the tile's texel
+};
+
 struct HeightTile {
   HeightTileId id;
   double east_m = 0.0, north_m = 0.0;  ///< south-west corner
   double spacing_m = 0.0;
   double per_m = 0.0;                  ///< cells per metre
-  double up_m = 0.0;                   ///< reference of `height_m`
-  Eigen::Vector2d texel = {0.0, 0.0};  ///< reference of `texels`
-  std::array<float, kTilePosts * kTilePosts> height_m{};
-  std::vector<Eigen::Vector2f> texels;  ///< by post, as height_m
-  /// Highest post of each square of 2^k cells a side, above up_m.
-  std::array<std::vector<float>, kLog2TileCells + 1> highest_m;
-  /// Largest vertical distance between the posts in a square of 2^k cells and the bilinear surface
-  /// through its corners; for k = 0 a bound for the ground between the posts.
-  std::array<std::vector<float>, kLog2TileCells + 1> deviation_m;
-  float hidden_m = 0.0F;  ///< the largest of deviation_m[0]
+  double up_m = 0.0;                   ///< reference of the posts' heights
+  Eigen::Vector2d texel = {0.0, 0.0};  ///< reference of the posts' texels
+  std::array<GroundPost, kTilePosts * kTilePosts> posts{};
+  /// Highest post of each square, above up_m.
+  SquareTable<0> highest_m;
+  /// Largest vertical distance between the posts in a square and the bilinear surface through its
+  /// corners.
+  SquareTable<1> deviation_m;
+  float hidden_m = 0.0F;  ///< bound of the same for the ground between the posts
   float lowest_m = 0.0F;
   float steepest = 0.0F;  ///< bound of the slope's length between the posts
   std::uint64_t last_use = 0;
 
   static HeightTile sample(const HeightTileId& id, const TexelMap& map);
 
-  [[nodiscard]] float height(int column, int row) const {
-    return height_m[static_cast<std::size_t>(row) * kTilePosts + column];
+  [[nodiscard]] const GroundPost& post(int column, int row) const {
+    return posts[static_cast<std::size_t>(row) * kTilePosts + column];
   }
+  [[nodiscard]] float height(int column, int row) const { return post(column, row).height_m; }
   [[nodiscard]] const Eigen::Vector2f& texel_at(int column, int row) const {
-    return texels[static_cast<std::size_t>(row) * kTilePosts + column];
-  }
-  /// @param column, row  of a cell
-  [[nodiscard]] float highest(int k, int column, int row) const {
-    return highest_m[k][static_cast<std::size_t>(row >> k) * (kTileCells >> k) + (column >> k)];
-  }
-  [[nodiscard]] float deviation(int k, int column, int row) const {
-    return deviation_m[k][static_cast<std::size_t>(row >> k) * (kTileCells >> k) + (column >> k)];
+    return post(column, row).texel;
   }
 };
 

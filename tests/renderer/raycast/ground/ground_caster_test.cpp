@@ -61,7 +61,8 @@ TEST(HeightTile, DeviationOfAParabolaIsThatOfItsChord) {
   for (int k = 1; k <= kLog2TileCells; ++k) {
     const double half_side_m = 0.5 * (1 << k) * tile.spacing_m;
     for (int at = 0; at < kTileCells; at += 5) {
-      EXPECT_NEAR(tile.deviation(k, at, 31 - at), kBend * half_side_m * half_side_m, 1e-5) << k;
+      EXPECT_NEAR(tile.deviation_m.at(k, at, 31 - at), kBend * half_side_m * half_side_m, 1e-5)
+          << k;
     }
   }
   // A quarter of the deviation of two cells; the tile's bound takes the half, for kinks.
@@ -82,11 +83,13 @@ TEST(HeightTile, HighestPostsAndSlopesAreBounds) {
         highest = std::max(highest, tile.height(c, r));
       }
     }
-    EXPECT_EQ(tile.highest(k, column, row), highest);
+    EXPECT_EQ(tile.highest_m.at(k, column, row), highest);
     const float rise = tile.height(column + 1, row) - tile.height(column, row);
     EXPECT_LE(std::abs(rise) / tile.spacing_m, tile.steepest);
   }
-  EXPECT_EQ(tile.lowest_m, *std::min_element(tile.height_m.begin(), tile.height_m.end()));
+  float lowest = 1e9F;
+  for (const GroundPost& post : tile.posts) lowest = std::min(lowest, post.height_m);
+  EXPECT_EQ(tile.lowest_m, lowest);
 }
 
 /// The crags from 100 m, without bounds, as rays of every direction need them.
