@@ -140,7 +140,7 @@ class BandBuilder {
   /// Distance on the ground between two rays' hits; large if one of them hits the sky.
   static double apart(const Node& a, const Node& b) {
     if (a.hit.sky() || b.hit.sky()) return a.hit.sky() == b.hit.sky() ? 0.0 : 1e9;
-    return std::hypot(a.u - b.u, a.v - b.v);
+    return Eigen::Vector2d(a.u - b.u, a.v - b.v).norm();
   }
 
   /// Halves the side that is longer on the ground, or both.

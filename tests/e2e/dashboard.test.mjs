@@ -285,6 +285,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     const stop = dashboard.page.locator(
       `.run[data-run="${second}"] button[aria-label="Stop this run"]`,
     );
+    await dashboard.untilStatus(second, 'running');
     // The button keeps its place and the focus while the flight goes on.
     const button = await stop.elementHandle();
     await button.focus();

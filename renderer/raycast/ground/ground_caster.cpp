@@ -109,27 +109,29 @@ GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, do
     // A larger square is tried only where the ray enters it: further inside a falling ray is no
     // higher above it.
     if (passed && ((column ^ last_column) | (row ^ last_row)) >> (k + 1) != 0) ++k;
-    passed = false;
     last_column = column;
     last_row = row;
-    const int side = 1 << k;
-    const int low_column = column & ~(side - 1);
-    const int low_row = row & ~(side - 1);
-    const double out = std::min({leave(ray.column, ray.per_column, low_column, side),
-                                 leave(ray.row, ray.per_row, low_row, side),
-                                 to});
-    const double end = std::max(out, t + 1e-9 * (1.0 + t));
-    const double lowest = ray.height + ray.d_height * (ray.d_height < 0.0 ? end : t);
-    if (lowest > tile.highest_m.at(k, column, row)) {
-      t = end;
-      passed = true;
-    } else if (k > 0) {
-      --k;
-    } else {
-      const double depth = enter_cell(tile, ray, column, row, t, end);
-      if (depth < kNever) return hit_at(node, ray, column, row, depth);
-      t = end;
-      passed = true;
+    const CellPlace place(column, row);
+    const double least_end = t + 1e-9 * (1.0 + t);
+    // The largest square above which the ray passes, or the cell.
+    for (passed = false; !passed; --k) {
+      const int side = 1 << k;
+      const double out =
+          std::min(std::min(leave(ray.column, ray.per_column, column & ~(side - 1), side),
+                            leave(ray.row, ray.per_row, row & ~(side - 1), side)),
+                   to);
+      const double end = std::max(out, least_end);
+      const double lowest = ray.height + ray.d_height * (ray.d_height < 0.0 ? end : t);
+      passed = lowest > tile.highest_m.at(k, place);
+      if (!passed && k == 0) {
+        const double depth = enter_cell(tile, ray, column, row, t, end);
+        if (depth < kNever) return hit_at(node, ray, column, row, depth);
+        passed = true;
+      }
+      if (passed) {
+        t = end;
+        break;
+      }
     }
   }
   return {};
@@ -302,12 +304,12 @@ double relief_around(const GroundTree& tree, const GroundHit& hit, double size_m
     const double cells = size_m * node->tile->per_m;
     if (cells <= 2.0) {
       // Close to a kink the deviation decreases with the size.
-      return node->tile->deviation_m.at(1, column, row) * 0.5 * cells;
+      return node->tile->deviation_m.at(1, {column, row}) * 0.5 * cells;
     }
     if (cells <= kTileCells || node->parent < 0) {
       int k = 1;
       while (k < kLog2TileCells && (1 << k) < cells) ++k;
-      return node->tile->deviation_m.at(k, column, row);
+      return node->tile->deviation_m.at(k, {column, row});
     }
     const GroundNode& parent = tree.nodes[node->parent];
     const bool east = node->east_m > parent.east_m;

@@ -85,7 +85,7 @@ void measure_heights(HeightTile& tile) {
     for (int column = 0; column < kTileCells; ++column) {
       const float sw = tile.height(column, row), se = tile.height(column + 1, row);
       const float nw = tile.height(column, row + 1), ne = tile.height(column + 1, row + 1);
-      tile.highest_m.set(0, column, row, std::max({sw, se, nw, ne}));
+      tile.highest_m.set(0, {column, row}, std::max({sw, se, nw, ne}));
       steepest_east = std::max({steepest_east, std::abs(se - sw), std::abs(ne - nw)});
       steepest_north = std::max({steepest_north, std::abs(nw - sw), std::abs(ne - se)});
     }
@@ -95,13 +95,12 @@ void measure_heights(HeightTile& tile) {
     const int half = 1 << (k - 1);
     for (int row = 0; row < kTileCells; row += 2 * half) {
       for (int column = 0; column < kTileCells; column += 2 * half) {
+        const auto part = [&](int east, int north) {
+          return tile.highest_m.at(k - 1, {column + east, row + north});
+        };
         tile.highest_m.set(k,
-                           column,
-                           row,
-                           std::max({tile.highest_m.at(k - 1, column, row),
-                                     tile.highest_m.at(k - 1, column + half, row),
-                                     tile.highest_m.at(k - 1, column, row + half),
-                                     tile.highest_m.at(k - 1, column + half, row + half)}));
+                           {column, row},
+                           std::max({part(0, 0), part(half, 0), part(0, half), part(half, half)}));
       }
     }
   }
@@ -130,7 +129,7 @@ void measure_deviations(HeightTile& tile) {
     const int cells = 1 << k;
     for (int row = 0; row < kTileCells; row += cells) {
       for (int column = 0; column < kTileCells; column += cells) {
-        tile.deviation_m.set(k, column, row, square_deviation(tile, column, row, cells));
+        tile.deviation_m.set(k, {column, row}, square_deviation(tile, column, row, cells));
       }
     }
   }
@@ -138,7 +137,7 @@ void measure_deviations(HeightTile& tile) {
   // surface, and a quarter of that of a smooth one.
   for (int row = 0; row < kTileCells; row += 2) {
     for (int column = 0; column < kTileCells; column += 2) {
-      tile.hidden_m = std::max(tile.hidden_m, 0.5F * tile.deviation_m.at(1, column, row));
+      tile.hidden_m = std::max(tile.hidden_m, 0.5F * tile.deviation_m.at(1, {column, row}));
     }
   }
 }

@@ -47,22 +47,16 @@ struct TexelMap {
   }
 };
 
-/// One value for each square of 2^k cells a side of a tile, from kFinest to the whole tile. The
-/// coarsest come first, and the four parts of a square are neighbours, in Morton's order: what a
-/// ray reads on its way down to a cell lies together in memory.
-template <int kFinest>
-class SquareTable {
+/// The place of a cell in Morton's order, in which the four parts of a square are neighbours.
+class CellPlace {
  public:
-  /// @param column, row  of a cell of the square
-  [[nodiscard]] float at(int k, int column, int row) const {
-    return values_[index(k, column, row)];
-  }
-  void set(int k, int column, int row, float value) { values_[index(k, column, row)] = value; }
-  /// The value of the whole tile.
-  [[nodiscard]] float whole() const { return values_[0]; }
+  CellPlace(int column, int row)
+      : place_(kSpread[column] | static_cast<unsigned>(kSpread[row]) << 1U) {}
+  /// Of the square of 2^k cells a side that contains the cell, among those of this size.
+  [[nodiscard]] unsigned of_square(int k) const { return place_ >> (2 * k); }
 
  private:
-  /// The bits of a cell's column, with a zero before each.
+  /// The bits of a number, with a zero before each.
   static constexpr auto kSpread = [] {
     std::array<std::uint16_t, kTileCells> spread{};
     for (unsigned i = 0; i < kTileCells; ++i) {
@@ -72,6 +66,21 @@ class SquareTable {
     }
     return spread;
   }();
+  unsigned place_;
+};
+
+/// One value for each square of 2^k cells a side of a tile, from kFinest to the whole tile. The
+/// coarsest come first: what a ray reads on its way down to a cell lies together in memory.
+template <int kFinest>
+class SquareTable {
+ public:
+  /// @param cell  of the square
+  [[nodiscard]] float at(int k, const CellPlace& cell) const { return values_[index(k, cell)]; }
+  void set(int k, const CellPlace& cell, float value) { values_[index(k, cell)] = value; }
+  /// The value of the whole tile.
+  [[nodiscard]] float whole() const { return values_[0]; }
+
+ private:
   /// Number of squares larger than those of 2^k cells a side.
   static constexpr auto kLarger = [] {
     std::array<std::uint16_t, kLog2TileCells + 2> larger{};
@@ -80,9 +89,8 @@ class SquareTable {
     }
     return larger;
   }();
-  static std::size_t index(int k, int column, int row) {
-    const unsigned cell = kSpread[column] | static_cast<unsigned>(kSpread[row]) << 1U;
-    return kLarger[k] + (cell >> (2 * k));
+  static std::size_t index(int k, const CellPlace& cell) {
+    return std::size_t{kLarger[k]} + cell.of_square(k);
   }
 
   static constexpr std::size_t kCount =

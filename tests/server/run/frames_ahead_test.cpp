@@ -110,8 +110,9 @@ TEST(FramesAhead, AreLimitedByNumberAndMemory) {
 /// An estimator that takes its time for the first frame lets the flight go on up to the limit.
 TEST(FramesAhead, AreMadeWhileAnEstimatorWorksUpToTheLimit) {
   Flight flight;
+  const Scenario scenario = small_scenario({kTwoSlow, "duration_s=4"});
   // The frame in progress, those that wait, and one whose record waits for an answer.
-  const int most = 2 + static_cast<int>(lockstep_frames_ahead(small_scenario({kTwoSlow})));
+  const int most = 2 + static_cast<int>(lockstep_frames_ahead(scenario));
   int made = 0;
   flight.before["b"] = [&](std::int64_t frame) {
     if (frame != 0) return;
@@ -121,10 +122,10 @@ TEST(FramesAhead, AreMadeWhileAnEstimatorWorksUpToTheLimit) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     made = flight.drawn.images;
   };
-  const auto run = run_scenario(small_scenario({kTwoSlow}), flight.options);
+  const auto run = run_scenario(scenario, flight.options);
   ASSERT_TRUE(run.ok()) << run.error().message;
   EXPECT_EQ(made, most);
-  EXPECT_EQ(run->info.frames, 21);
+  EXPECT_EQ(run->info.frames, 41);
 }
 
 /// However long the estimators take, the files are those of a flight without any waiting.
@@ -133,7 +134,8 @@ TEST(FramesAhead, DoNotChangeTheRecord) {
       kTwoSlow,
       R"(faults=[{"kind":"dropped_frames","at_s":0.35,"duration_s":0.2},{"kind":"frozen_frame","at_s":0.95,"duration_s":0.3}])",
       R"(sensors={"imu":{"rate_hz":50}})",
-      "recording.frames=true"};
+      "recording.frames=true",
+      "duration_s=4"};
   std::vector<std::vector<std::pair<std::string, std::string>>> records;
   for (const int slow : {0, 1, 2}) {
     Flight flight;

@@ -61,7 +61,7 @@ TEST(HeightTile, DeviationOfAParabolaIsThatOfItsChord) {
   for (int k = 1; k <= kLog2TileCells; ++k) {
     const double half_side_m = 0.5 * (1 << k) * tile.spacing_m;
     for (int at = 0; at < kTileCells; at += 5) {
-      EXPECT_NEAR(tile.deviation_m.at(k, at, 31 - at), kBend * half_side_m * half_side_m, 1e-5)
+      EXPECT_NEAR(tile.deviation_m.at(k, {at, 31 - at}), kBend * half_side_m * half_side_m, 1e-5)
           << k;
     }
   }
@@ -83,7 +83,7 @@ TEST(HeightTile, HighestPostsAndSlopesAreBounds) {
         highest = std::max(highest, tile.height(c, r));
       }
     }
-    EXPECT_EQ(tile.highest_m.at(k, column, row), highest);
+    EXPECT_EQ(tile.highest_m.at(k, {column, row}), highest);
     const float rise = tile.height(column + 1, row) - tile.height(column, row);
     EXPECT_LE(std::abs(rise) / tile.spacing_m, tile.steepest);
   }
