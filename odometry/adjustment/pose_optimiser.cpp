@@ -22,8 +22,8 @@ bool residual_of(const PinholeCamera& camera,
   return true;
 }
 
-/// Adds weight * J^T J to H. Eigen's rankUpdate, made for large matrices, gives the same bits and
-/// takes five times as long.
+/// Adds weight * J^T J to H. Eigen's rankUpdate gives the same bits, but copies the operands as for
+/// large matrices.
 void add_weighted_square(const Matrix26d& J, double weight, Matrix6d& H) {
   const Vector6d x = J.row(0);
   const Vector6d y = J.row(1);

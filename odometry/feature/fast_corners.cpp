@@ -1,5 +1,6 @@
 #include "odometry/feature/fast_corners.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>

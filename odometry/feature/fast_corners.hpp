@@ -25,7 +25,7 @@ struct FastCorner {
 /// DOI 10.1007/11744023_34).
 /// @param image  CV_8U
 /// @param cell  at most kFastCellPx wide and high; kFastReachPx around it are inside the image
-/// @param thresholds  grey levels, descending
+/// @param thresholds  grey levels, at least one, descending
 /// @param out  is replaced
 void find_fast_corners(const cv::Mat& image,
                        const cv::Rect& cell,

@@ -8,8 +8,8 @@
 
 namespace overfly::server {
 
-/// An estimator that takes ten times as long for a keyframe as for other frames is busy all the
-/// time with this many frames in front of it.
+/// A keyframe of `feature` takes as long as the rendering of ten frames. With twice as many frames
+/// ahead neither side waits for the other when keyframes follow each other.
 inline constexpr std::size_t kMostFramesAhead = 24;
 /// Limit of the memory of these frames.
 inline constexpr std::uint64_t kFramesAheadBytes = std::uint64_t{32} << 20U;

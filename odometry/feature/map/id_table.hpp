@@ -69,12 +69,13 @@ class IdTable {
     slots_.erase(slots_.begin(), i);
   }
   /// Null if there is none.
-  [[nodiscard]] Object* find(int id) const {
+  [[nodiscard]] const Object* find(int id) const {
     const auto place = static_cast<std::size_t>(id) - static_cast<std::size_t>(first_);
     return place < slots_.size() ? slots_[place].get() : nullptr;
   }
+  [[nodiscard]] Object* find(int id) { return const_cast<Object*>(std::as_const(*this).find(id)); }
   /// @throws std::out_of_range if there is none
-  [[nodiscard]] Object& at(int id) const {
+  [[nodiscard]] Object& at(int id) {
     if (Object* object = find(id)) return *object;
     throw std::out_of_range("no object has the id " + std::to_string(id));
   }

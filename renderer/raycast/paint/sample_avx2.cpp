@@ -6,11 +6,11 @@
 // processor would wait for each address, whose computation is a long chain.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
+#include "renderer/raycast/paint/block_mips.hpp"
 #include "renderer/raycast/paint/sample.hpp"
 #include "renderer/raycast/paint/sample_weights.hpp"
 
@@ -228,47 +228,6 @@ OVERFLY_AVX2 __m256 wide_samples(const std::uint32_t* pairs, int pixel, const Le
 
 OVERFLY_AVX2 __m256 blend(__m256 a, __m256 b, __m256 share) {
   return _mm256_add_ps(a, _mm256_mul_ps(share, _mm256_sub_ps(b, a)));
-}
-
-/// The mip levels used by a block's pixels. The scales of all but `kAny` are powers of two.
-enum class Mips {
-  kFirst,  ///< all only the first one
-  kTwo,    ///< all the same two
-  kAny,
-};
-
-/// Values common to a whole block.
-struct BlockMips {
-  Mips mips = Mips::kAny;
-  int first = 0;  ///< of kTwo
-};
-
-/// Rounding changes a level of detail by far less than this.
-constexpr float kLodSlack = 1e-3F;
-
-/// Whether the scales of a mip level are powers of two.
-bool exact_scale(const PackedTile& tile, int mip) {
-  constexpr std::uint32_t kFraction = (1U << 23U) - 1U;
-  return ((std::bit_cast<std::uint32_t>(tile.scale_x[mip]) |
-           std::bit_cast<std::uint32_t>(tile.scale_y[mip])) &
-          kFraction) == 0;
-}
-
-BlockMips mips_of(const TexelBlock& block, const PackedTile& tile) {
-  const auto x = static_cast<float>(block.columns - 1);
-  const auto y = static_cast<float>(block.rows - 1);
-  const Bilinear4& f = block.lod;
-  const float east = f[0] + f[1] * x;
-  const float south = f[0] + f[2] * y;
-  const float both = east + (f[2] + f[3] * x) * y;
-  const float low = std::min(std::min(f[0], east), std::min(south, both)) - kLodSlack;
-  const float high = std::max(std::max(f[0], east), std::max(south, both)) + kLodSlack;
-  if (high <= 0.0F && exact_scale(tile, 0)) return {Mips::kFirst, 0};
-  if (!(low > 0.0F && high < static_cast<float>(kPackedMips - 1))) return {};
-  const int first = static_cast<int>(low);
-  const bool two =
-      first == static_cast<int>(high) && exact_scale(tile, first) && exact_scale(tile, first + 1);
-  return two ? BlockMips{Mips::kTwo, first} : BlockMips{};
 }
 
 /// Asks for the cache lines of the texels of a block's border. A line of texels enters and leaves

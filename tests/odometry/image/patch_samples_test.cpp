@@ -64,8 +64,8 @@ TEST(PatchSamples, AWarpOfARampIsExact) {
 }
 
 TEST(PatchSamples, EveryInstructionSetGivesTheSameBits) {
-  if (best_patch_sampler().name == plain_patch_sampler().name) {
-    GTEST_SKIP() << "this machine has no vector instructions that are used";
+  if (&best_patch_sampler() == &plain_patch_sampler()) {
+    GTEST_SKIP() << "this machine has no AVX2";
   }
   const cv::Mat image = random_image(97, 83, 5);
   std::mt19937 generator(7);
