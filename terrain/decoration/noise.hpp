@@ -42,18 +42,53 @@ inline int floor_int(float value) {
   return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
 }
 
+/// Values in [0, 1) at the corners of a cell of the lattice of noise().
+struct NoiseCorners {
+  float north_west, north_east, south_west, south_east;
+
+  /// @param i, j  of the corner with the lowest coordinates
+  static NoiseCorners of(int i, int j, std::uint32_t seed) {
+    return {unit(hash(i, j, seed)),
+            unit(hash(i + 1, j, seed)),
+            unit(hash(i, j + 1, seed)),
+            unit(hash(i + 1, j + 1, seed))};
+  }
+  /// @param u, v  place in the cell, in [0, 1)
+  [[nodiscard]] float at(float u, float v) const {
+    const float s = u * u * (3.0F - 2.0F * u);
+    const float t = v * v * (3.0F - 2.0F * v);
+    return 2.0F * lerp(lerp(north_west, north_east, s), lerp(south_west, south_east, s), t) - 1.0F;
+  }
+};
+
 /// Smooth value noise in [-1, 1] with features of size 1.
 inline float noise(float x, float y, std::uint32_t seed) {
   const int i = floor_int(x);
   const int j = floor_int(y);
-  const float u = x - static_cast<float>(i);
-  const float v = y - static_cast<float>(j);
-  const float s = u * u * (3.0F - 2.0F * u);
-  const float t = v * v * (3.0F - 2.0F * v);
-  const float north = lerp(unit(hash(i, j, seed)), unit(hash(i + 1, j, seed)), s);
-  const float south = lerp(unit(hash(i, j + 1, seed)), unit(hash(i + 1, j + 1, seed)), s);
-  return 2.0F * lerp(north, south, t) - 1.0F;
+  return NoiseCorners::of(i, j, seed).at(x - static_cast<float>(i), y - static_cast<float>(j));
 }
+
+/// noise() for places that seldom leave a cell: it keeps the last cell's corners.
+class NoiseInCell {
+ public:
+  float at(float x, float y, std::uint32_t seed) {
+    const int i = floor_int(x);
+    const int j = floor_int(y);
+    if (i != i_ || j != j_ || seed != seed_) {
+      corners_ = NoiseCorners::of(i, j, seed);
+      i_ = i;
+      j_ = j;
+      seed_ = seed;
+    }
+    return corners_.at(x - static_cast<float>(i), y - static_cast<float>(j));
+  }
+
+ private:
+  int i_ = 0;
+  int j_ = 0;
+  std::uint32_t seed_ = 0;
+  NoiseCorners corners_ = NoiseCorners::of(0, 0, 0);
+};
 
 /// Sum of `octaves` noises, each with half the size and `gain` times the strength of the preceding
 /// one; about [-1, 1].

@@ -5,6 +5,12 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
+/// The fence: a rectangle with a ragged line [m].
+constexpr float kFenceU = 75.0F;  ///< beyond the runway's ends
+constexpr float kFenceLowV = -85.0F;
+constexpr float kFenceHighV = 255.0F;
+constexpr float kFenceRaggednessM = 6.0F;
+
 /// Distance to a rectangle |u| <= half_u, low_v <= v <= high_v; negative inside.
 float rect_m(float u, float v, float half_u, float low_v, float high_v) {
   const float du = std::abs(u) - half_u;
@@ -68,8 +74,15 @@ Airfield Airfield::plan(float half_m, Dice& dice) {
 }
 
 float Airfield::outside_m(float u, float v) const {
-  return rect_m(u, v, half_length_m() + 75.0F, -85.0F, 255.0F) +
-         6.0F * noise(0.01F * u, 0.01F * v, seed);
+  return rect_m(u, v, half_length_m() + kFenceU, kFenceLowV, kFenceHighV) +
+         kFenceRaggednessM * noise(0.01F * u, 0.01F * v, seed);
+}
+
+bool Airfield::surely_outside(float u, float v, float distance_m) const {
+  constexpr float kRoundingM = 0.1F;
+  const float beyond_m = distance_m + kFenceRaggednessM + kRoundingM;
+  return std::abs(u) - half_length_m() - kFenceU > beyond_m || kFenceLowV - v > beyond_m ||
+         v - kFenceHighV > beyond_m;
 }
 
 float Airfield::from_pavement_m(float u, float v) const {

@@ -26,6 +26,9 @@ struct Airfield {
   }
   /// Distance to the fence, negative inside.
   [[nodiscard]] float outside_m(float u, float v) const;
+  /// Whether outside_m() is more than `distance_m`, where that is known without the fence's exact
+  /// line; false where it is not.
+  [[nodiscard]] bool surely_outside(float u, float v, float distance_m) const;
   /// The grass' and pavements' colour inside the fence.
   [[nodiscard]] Rgb colour(float u, float v, float x, float y) const;
   /// The runway's surface and paint, with the textures of the place.

@@ -5,11 +5,20 @@
 namespace overfly::terrain::synthesis {
 namespace {
 
-/// The crown's radius in a direction: a ragged disc.
-float crown_radius(const Tree& tree, float dx, float dy, float distance) {
+/// Coverage by a crown, a ragged disc, with an edge of the given width.
+float crown_cover(const Tree& tree, float dx, float dy, float distance, float edge_m) {
+  constexpr float kMean = 0.88F;
+  constexpr float kRaggedness = 0.24F;
+  constexpr float kRoundingM = 0.01F;
+  // Only near the edge its shape matters.
+  const float sure_m = edge_m + kRoundingM;
+  if (distance < (kMean - kRaggedness) * tree.radius_m - sure_m) return 1.0F;
+  if (distance > (kMean + kRaggedness) * tree.radius_m + sure_m) return 0.0F;
   const float inverse = 1.0F / std::max(distance, 0.05F);
-  return tree.radius_m *
-         (0.88F + 0.24F * noise(1.9F * dx * inverse + 5.0F, 1.9F * dy * inverse, tree.seed));
+  const float radius_m =
+      tree.radius_m *
+      (kMean + kRaggedness * noise(1.9F * dx * inverse + 5.0F, 1.9F * dy * inverse, tree.seed));
+  return soft(distance - radius_m, edge_m);
 }
 
 /// A structure's own axes.
@@ -59,19 +68,20 @@ float shadow_m(const Structure& s, float x, float y) {
 
 void cast_shadow(Canvas& canvas, const Tree& tree) {
   // The crown is a sphere on a trunk: its shadow is a disc that extends back to the foot.
+  constexpr float kDarkest = 0.92F;
   const float reach = tree.radius_m * 1.15F;
   for (const float level : {0.3F, 0.62F}) {
     const float height = level * tree.height_m;
     const float x = tree.at.x + height * kShadowEast;
     const float y = tree.at.y + height * kShadowNorth;
     canvas.around(x, y, reach + 0.5F, [&](int u, int v) {
+      float& shadow = canvas.shadow[canvas.index(u, v)];
+      if (shadow >= kDarkest) return;
       const float dx = canvas.east(u) - x;
       const float dy = canvas.north(v) - y;
       const float distance = std::sqrt(dx * dx + dy * dy);
       if (distance > reach) return;
-      const float dark = 0.92F * soft(distance - crown_radius(tree, dx, dy, distance), 0.35F);
-      float& shadow = canvas.shadow[canvas.index(u, v)];
-      shadow = std::max(shadow, dark);
+      shadow = std::max(shadow, kDarkest * crown_cover(tree, dx, dy, distance, 0.35F));
     });
   }
 }
@@ -95,7 +105,7 @@ void draw(Canvas& canvas, const Tree& tree) {
     const float dy = y - tree.at.y;
     const float distance = std::sqrt(dx * dx + dy * dy);
     if (distance > reach) return;
-    const float cover = soft(distance - crown_radius(tree, dx, dy, distance), 0.22F);
+    const float cover = crown_cover(tree, dx, dy, distance, 0.22F);
     if (cover <= 0.0F) return;
     // A lumpy dome in the sun; gaps between the lumps are dark.
     const float east = dx * inverse_radius;

@@ -1,68 +1,19 @@
 #include "terrain/synthesis/landscape/ground.hpp"
 
+#include <limits>
+#include <utility>
+
 namespace overfly::terrain::synthesis {
 namespace {
 
-/// The fine textures shared by all ground, about [-1, 1] each.
-struct Texture {
-  float grain;  ///< a texel
-  float clods;  ///< a metre
-  float tufts;  ///< three metres
-
-  Texture(float x, float y, std::uint32_t seed)
-      : grain(0.6F * noise(x * 3.1F, y * 3.1F, seed) +
-              0.55F * noise(x * 1.65F, y * 1.65F, seed + 1)),
-        clods(noise(x * 0.83F, y * 0.83F, seed + 2)),
-        tufts(noise(x * 0.31F, y * 0.31F, seed + 3)) {}
-};
+/// A yard's edge varies by this share of its radius.
+constexpr float kYardRaggedness = 0.22F;
+/// A yard colours the ground up to this distance from its edge.
+constexpr float kYardRimM = 4.0F;
+/// The fence colours the ground up to this distance outside.
+constexpr float kFenceRimM = 3.0F;
 
 float wrap(float value, float period) { return value - period * std::floor(value / period); }
-
-Rgb field_colour(const Parcel& parcel,
-                 const ParcelHit& hit,
-                 const Slow& slow,
-                 const Texture& tex,
-                 float x,
-                 float y) {
-  // The machine turns on the headland, and the rows follow the boundary.
-  const float headland_m = 2.0F * parcel.pass_width_m;
-  const bool headland = parcel.pass_contrast > 0.0F && hit.border_m < headland_m;
-  const float across = headland ? hit.border_m : -parcel.row_sin * x + parcel.row_cos * y;
-  const float along = headland ? hit.along_m : parcel.row_cos * x + parcel.row_sin * y;
-
-  const float soil =
-      0.5F + parcel.blotch * (0.75F * slow.soil + 0.45F * slow.patches) + 0.10F * tex.tufts;
-  Rgb colour = mix(parcel.dark, parcel.light, std::clamp(soil, -0.15F, 1.15F));
-
-  float shade = 1.0F;
-  const int pass = floor_int(across / parcel.pass_width_m);
-  const float hand = unit(hash(pass, headland ? 1 : 0, parcel.seed)) - 0.5F;
-  shade +=
-      parcel.pass_contrast * ((pass & 1) != 0 ? 1.0F : -1.0F) + 1.3F * parcel.pass_contrast * hand;
-  if (parcel.row_contrast > 0.0F) {
-    const float phase = wrap(across / parcel.row_spacing_m, 1.0F);
-    const float wave = 1.0F - 4.0F * std::abs(phase - 0.5F);
-    const float vigour =
-        0.65F + 0.5F * noise(along * 0.12F, across * 0.6F, parcel.seed + 5) + 0.25F * tex.clods;
-    shade += parcel.row_contrast * wave * vigour;
-    const int row = floor_int(across / parcel.row_spacing_m);
-    shade += 0.5F * parcel.row_contrast *
-             (unit(hash(row, floor_int(along / 23.0F), parcel.seed + 6)) - 0.5F);
-  }
-  const float thin = noise(x * 0.075F, y * 0.075F, parcel.seed + 7) + 0.55F * tex.tufts +
-                     0.35F * tex.clods + 0.8F * slow.patches;
-  const float bare = parcel.bare * smoothstep(0.75F, 1.35F, thin);
-  colour = mix(colour, {176, 156, 124}, bare);
-  if (parcel.tramline_m > 0.0F) {
-    const float offset = wrap(across, parcel.tramline_m) - 0.5F * parcel.tramline_m;
-    const float wheel = std::abs(std::abs(offset) - 0.95F) - 0.28F;
-    colour = mix(colour,
-                 parcel.use == LandUse::kCrop ? Rgb{112, 104, 74} : Rgb{150, 134, 104},
-                 0.7F * soft(wheel));
-  }
-  shade += parcel.grain * (0.75F * tex.grain + 0.55F * tex.clods + 0.35F * tex.tufts);
-  return colour * shade;
-}
 
 Rgb grass_colour(const Slow& slow, const Texture& tex) {
   const float dry = smoothstep(-0.8F, 0.9F, slow.soil + 0.7F * slow.patches + 0.4F * tex.tufts);
@@ -143,6 +94,11 @@ Rgb water_colour(
   return mix(bank, water, soft(-inside_m, 0.3F));
 }
 
+std::vector<float> scaled(std::vector<float> values, float factor) {
+  for (float& value : values) value *= factor;
+  return values;
+}
+
 }  // namespace
 
 Slow slow_at(const Landscape& land, float x, float y) {
@@ -182,30 +138,109 @@ Slow interpolate(const Slow& a, const Slow& b, float t) {
 
 float yard_m(const Yard& yard, float x, float y) {
   const float distance = std::hypot(x - yard.middle.x, y - yard.middle.y);
-  return distance - yard.radius_m * (1.0F + 0.22F * noise(x / 17.0F, y / 17.0F, yard.seed));
+  return distance -
+         yard.radius_m * (1.0F + kYardRaggedness * noise(x / 17.0F, y / 17.0F, yard.seed));
 }
 
-Rgb ground_colour(const Landscape& land,
-                  const std::vector<const Yard*>& yards,
-                  const Slow& slow,
-                  float x,
-                  float y) {
-  const Point uv = land.airfield.to_uv(x, y);
-  const float outside = land.airfield.outside_m(uv.x, uv.y);
-  if (outside < -9.0F) return land.airfield.colour(uv.x, uv.y, x, y) * (slow.light * slow.drift);
+bool surely_outside(const Yard& yard, float x, float y, float distance_m) {
+  constexpr float kRoundingM = 0.1F;
+  const float reach_m = (1.0F + kYardRaggedness) * yard.radius_m + distance_m + kRoundingM;
+  const float dx = x - yard.middle.x;
+  const float dy = y - yard.middle.y;
+  return dx * dx + dy * dy > reach_m * reach_m;
+}
 
-  const Texture tex(x, y, land.water.seed + 17);
+GroundPainter::Noise::Noise(float texels_per_m,
+                            const std::vector<float>& texels_x,
+                            std::uint32_t seed)
+    : per_m(texels_per_m),
+      x(scaled(texels_x, per_m)),
+      line(x.front(), x.back(), seed),
+      values(x.size()) {}
+
+GroundPainter::GroundPainter(const Landscape& land,
+                             std::vector<const Yard*> yards,
+                             const std::vector<float>& x)
+    : land_(land),
+      yards_(std::move(yards)),
+      x_(x),
+      fine_(3.1F, x, land.water.seed + 17),
+      coarse_(1.65F, x, land.water.seed + 18),
+      clods_(0.83F, x, land.water.seed + 19),
+      tufts_(0.31F, x, land.water.seed + 20) {}
+
+void GroundPainter::select_line(float y) {
+  y_ = y;
+  for (Noise* noise : {&fine_, &coarse_, &clods_, &tufts_}) noise->select_line(y);
+}
+
+Rgb GroundPainter::field_colour(
+    const ParcelHit& hit, const Slow& slow, const Texture& tex, float x, float y) {
+  const Parcel& parcel = *hit.parcel;
+  // The machine turns on the headland, and the rows follow the boundary.
+  const float headland_m = 2.0F * parcel.pass_width_m;
+  const bool headland = parcel.pass_contrast > 0.0F && hit.border_m < headland_m;
+  const float across = headland ? hit.border_m : -parcel.row_sin * x + parcel.row_cos * y;
+  const float along = headland ? hit.along_m : parcel.row_cos * x + parcel.row_sin * y;
+
+  const float soil =
+      0.5F + parcel.blotch * (0.75F * slow.soil + 0.45F * slow.patches) + 0.10F * tex.tufts;
+  Rgb colour = mix(parcel.dark, parcel.light, std::clamp(soil, -0.15F, 1.15F));
+
+  float shade = 1.0F;
+  const int pass = floor_int(across / parcel.pass_width_m);
+  const float hand = unit(hash(pass, headland ? 1 : 0, parcel.seed)) - 0.5F;
+  shade +=
+      parcel.pass_contrast * ((pass & 1) != 0 ? 1.0F : -1.0F) + 1.3F * parcel.pass_contrast * hand;
+  if (parcel.row_contrast > 0.0F) {
+    const float phase = wrap(across / parcel.row_spacing_m, 1.0F);
+    const float wave = 1.0F - 4.0F * std::abs(phase - 0.5F);
+    const float vigour = 0.65F + 0.5F * vigour_.at(along * 0.12F, across * 0.6F, parcel.seed + 5) +
+                         0.25F * tex.clods;
+    shade += parcel.row_contrast * wave * vigour;
+    const int row = floor_int(across / parcel.row_spacing_m);
+    shade += 0.5F * parcel.row_contrast *
+             (unit(hash(row, floor_int(along / 23.0F), parcel.seed + 6)) - 0.5F);
+  }
+  const float thin = thin_.at(x * 0.075F, y * 0.075F, parcel.seed + 7) + 0.55F * tex.tufts +
+                     0.35F * tex.clods + 0.8F * slow.patches;
+  const float bare = parcel.bare * smoothstep(0.75F, 1.35F, thin);
+  colour = mix(colour, {176, 156, 124}, bare);
+  if (parcel.tramline_m > 0.0F) {
+    const float offset = wrap(across, parcel.tramline_m) - 0.5F * parcel.tramline_m;
+    const float wheel = std::abs(std::abs(offset) - 0.95F) - 0.28F;
+    colour = mix(colour,
+                 parcel.use == LandUse::kCrop ? Rgb{112, 104, 74} : Rgb{150, 134, 104},
+                 0.7F * soft(wheel));
+  }
+  shade += parcel.grain * (0.75F * tex.grain + 0.55F * tex.clods + 0.35F * tex.tufts);
+  return colour * shade;
+}
+
+Rgb GroundPainter::colour(std::size_t texel, const Slow& slow) {
+  const float x = x_[texel];
+  const float y = y_;
+  const Point uv = land_.airfield.to_uv(x, y);
+  const float outside = land_.airfield.surely_outside(uv.x, uv.y, kFenceRimM)
+                            ? std::numeric_limits<float>::max()
+                            : land_.airfield.outside_m(uv.x, uv.y);
+  if (outside < -9.0F) return land_.airfield.colour(uv.x, uv.y, x, y) * (slow.light * slow.drift);
+  const Texture tex{0.6F * fine_.values[texel] + 0.55F * coarse_.values[texel],
+                    clods_.values[texel],
+                    tufts_.values[texel]};
+
   const float bent_x = x + slow.bend_x;
   const float bent_y = y + slow.bend_y;
-  const ParcelHit hit = land.parcels.at(bent_x, bent_y);
-  Rgb colour = field_colour(*hit.parcel, hit, slow, tex, bent_x, bent_y);
+  const ParcelHit hit = land_.parcels.at(bent_x, bent_y);
+  Rgb colour = field_colour(hit, slow, tex, bent_x, bent_y);
   colour = border_colour(colour, hit, slow, tex);
   if (slow.wood > 0.0F) colour = mix(colour, grass_colour(slow, tex) * 0.8F, slow.wood);
   const bool track = hit.road == Border::kTrack;
   if (track && hit.road_m < 9.0F) colour = road_colour(colour, hit, slow, tex);
-  for (const Yard* yard : yards) {
+  for (const Yard* yard : yards_) {
+    if (surely_outside(*yard, x, y, kYardRimM)) continue;
     const float distance = yard_m(*yard, x, y);
-    if (distance < 4.0F) colour = yard_colour(colour, *yard, distance, slow, tex);
+    if (distance < kYardRimM) colour = yard_colour(colour, *yard, distance, slow, tex);
   }
   const float in_stream = slow.stream_half_m - slow.stream_m;
   const float in_pond = -slow.pond_m;
@@ -217,7 +252,7 @@ Rgb ground_colour(const Landscape& land,
     colour = water_colour(colour, wet, in_pond > in_stream ? 7.0F : 2.4F, tex, x, y);
   }
   if (!track && hit.road_m < 9.0F) colour = road_colour(colour, hit, slow, tex);
-  if (outside < 3.0F) {
+  if (outside < kFenceRimM) {
     // The fence's line, the track inside it, and the grass up to the airfield's own.
     const Rgb grass = grass_colour(slow, tex);
     colour = mix(colour, grass, soft(outside - 1.5F, 0.8F));

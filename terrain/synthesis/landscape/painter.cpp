@@ -1,6 +1,7 @@
 #include "terrain/synthesis/landscape/painter.hpp"
 
 #include <cstdint>
+#include <utility>
 
 #include "terrain/synthesis/landscape/canvas.hpp"
 #include "terrain/synthesis/landscape/ground.hpp"
@@ -40,6 +41,9 @@ void paint_ground(Canvas& canvas, const Landscape& land) {
           slow_at(land, canvas.east(u), canvas.north(v));
     }
   }
+  std::vector<float> east(static_cast<std::size_t>(canvas.width));
+  for (int u = 0; u < canvas.width; ++u) east[static_cast<std::size_t>(u)] = canvas.east(u);
+  GroundPainter painter(land, std::move(yards), east);
   std::vector<Slow> line(static_cast<std::size_t>(columns));
   for (int v = 0; v < canvas.height; ++v) {
     const int j = floor_div(canvas.y0 + v) - first_y;
@@ -48,13 +52,13 @@ void paint_ground(Canvas& canvas, const Landscape& land) {
       const Slow* node = &lattice[static_cast<std::size_t>(j) * columns + i];
       line[static_cast<std::size_t>(i)] = interpolate(node[0], node[columns], t);
     }
+    painter.select_line(canvas.north(v));
     for (int u = 0; u < canvas.width; ++u) {
       const int i = floor_div(canvas.x0 + u) - first_x;
       const float s = static_cast<float>(canvas.x0 + u - (first_x + i) * kLattice) / kLattice;
       const Slow slow =
           interpolate(line[static_cast<std::size_t>(i)], line[static_cast<std::size_t>(i) + 1], s);
-      canvas.colour[canvas.index(u, v)] =
-          ground_colour(land, yards, slow, canvas.east(u), canvas.north(v));
+      canvas.colour[canvas.index(u, v)] = painter.colour(static_cast<std::size_t>(u), slow);
     }
   }
 }
@@ -71,19 +75,33 @@ void apply_shadows(Canvas& canvas) {
   }
 }
 
+/// A line of colours, each averaged with its eight neighbours: red, green, blue, red and so on.
+/// @param v  of the northern neighbours
+void blur_line(const Canvas& canvas, int v, std::vector<float>& line) {
+  static_assert(sizeof(Rgb) == 3 * sizeof(float));
+  constexpr float kBlur[3] = {0.11F, 0.78F, 0.11F};
+  std::fill(line.begin(), line.end(), 0.0F);
+  float* sum = line.data();
+  const std::ptrdiff_t levels = std::ssize(line);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const auto* from =
+          reinterpret_cast<const float*>(canvas.colour.data() + canvas.index(i, v + j));
+      const float weight = kBlur[i] * kBlur[j];
+      for (std::ptrdiff_t k = 0; k < levels; ++k) sum[k] += from[k] * weight;
+    }
+  }
+}
+
 /// The camera's effects: slight blur, slight noise, 8 bit.
 Image expose(const Canvas& canvas, int width, int height) {
   Image image(width, height, 3);
-  constexpr float kBlur[3] = {0.11F, 0.78F, 0.11F};
+  std::vector<float> line(3 * static_cast<std::size_t>(width));
   for (int v = 0; v < height; ++v) {
+    blur_line(canvas, v, line);
     for (int u = 0; u < width; ++u) {
-      Rgb sum;
-      for (int j = 0; j < 3; ++j) {
-        const Rgb* row = &canvas.colour[canvas.index(u, v + j)];
-        for (int i = 0; i < 3; ++i) {
-          sum = sum + row[i] * (kBlur[i] * kBlur[j]);
-        }
-      }
+      const float* blurred = line.data() + 3 * static_cast<std::ptrdiff_t>(u);
+      Rgb sum{blurred[0], blurred[1], blurred[2]};
       // Slight haze over the whole image.
       const float grey = 0.3F * sum.r + 0.59F * sum.g + 0.11F * sum.b;
       sum = mix(sum, {grey, grey, grey}, 0.10F) * 0.95F + Rgb{7.0F, 9.0F, 12.0F};

@@ -64,8 +64,10 @@ Stand stand_at(const Landscape& land, float x, float y) {
   }
   if (shore < 16.0F) stand.chance = std::max(stand.chance, 0.22F * smoothstep(-0.2F, 0.5F, clump));
   for (const Yard& yard : land.structures.yards) {
+    constexpr float kPlantedM = 9.0F;
+    if (surely_outside(yard, x, y, kPlantedM)) continue;
     const float edge = yard_m(yard, x, y);
-    if (edge > 9.0F) continue;
+    if (edge > kPlantedM) continue;
     const bool rim = edge > -6.0F;
     stand.chance = yard.garden ? (rim ? 0.22F : 0.08F) : (rim ? 0.15F : 0.01F);
     stand.size = 0.85F;
