@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "renderer/raycast/block_places.hpp"
 
@@ -69,9 +70,10 @@ class BandBuilder {
     const auto skies = std::count_if(
         patch.corners.begin(), patch.corners.end(), [](auto* node) { return node->hit.sky(); });
     if (skies == 4) return add_sky(patch);
-    if (skies == 0 && flat_enough(patch)) return add_ground(patch);
+    std::optional<Node> centre;
+    if (skies == 0 && flat_enough(patch, centre)) return add_ground(patch);
     if (patch.columns * patch.rows <= kFewPixels) return add_pixels(patch);
-    divide(patch);
+    divide(patch, centre);
   }
 
  private:
@@ -98,7 +100,8 @@ class BandBuilder {
   /// which is usually several times too large. If the bound exceeds the limit only moderately, the
   /// ray through the patch's centre decides, where a smooth surface deviates most. That ray also
   /// detects objects in front of the corners' ground.
-  [[nodiscard]] bool flat_enough(const Patch& patch) const {
+  /// @param centre  is set to that ray if it is cast
+  [[nodiscard]] bool flat_enough(const Patch& patch, std::optional<Node>& centre) const {
     const double bound_px = interpolation_error_px(patch);
     const double loose = settings_.depth_only ? 1.0 : kLooseBound;
     if (bound_px > loose * kBlockErrorPx) return false;
@@ -107,7 +110,7 @@ class BandBuilder {
       return settings_.caster->meets_ground_once(node->direction);
     });
     if (bound_px <= kBlockErrorPx && unoccluded) return true;
-    const Node middle = cast_in(patch, 0.5, 0.5);
+    const Node& middle = centre.emplace(cast_in(patch, 0.5, 0.5));
     if (middle.hit.sky()) return false;
     const double expected = 0.25 * (c[0]->inverse_depth + c[1]->inverse_depth +
                                     c[2]->inverse_depth + c[3]->inverse_depth);
@@ -144,7 +147,8 @@ class BandBuilder {
   }
 
   /// Halves the side that is longer on the ground, or both.
-  void divide(const Patch& patch) {
+  /// @param centre  the ray through the patch's centre, if it was cast
+  void divide(const Patch& patch, const std::optional<Node>& centre) {
     const auto& c = patch.corners;
     const double wide = std::max(apart(*c[0], *c[1]), apart(*c[2], *c[3]));
     const double high = std::max(apart(*c[0], *c[2]), apart(*c[1], *c[3]));
@@ -153,7 +157,7 @@ class BandBuilder {
     } else if (patch.columns == 1 || high > kMuchLonger * wide) {
       divide_rows(patch);
     } else {
-      divide_both(patch);
+      divide_both(patch, centre);
     }
   }
 
@@ -175,14 +179,15 @@ class BandBuilder {
     add({patch.x, patch.y + upper, patch.columns, patch.rows - upper, {&west, &east, c[2], c[3]}});
   }
 
-  void divide_both(const Patch& patch) {
+  void divide_both(const Patch& patch, const std::optional<Node>& centre) {
     const int left = (patch.columns + 1) / 2;
     const int upper = (patch.rows + 1) / 2;
     const double a = static_cast<double>(left) / patch.columns;
     const double b = static_cast<double>(upper) / patch.rows;
     const Node top = cast_in(patch, a, 0.0), bottom = cast_in(patch, a, 1.0);
     const Node west = cast_in(patch, 0.0, b), east = cast_in(patch, 1.0, b);
-    const Node middle = cast_in(patch, a, b);
+    const bool at_centre = centre && a == 0.5 && b == 0.5;
+    const Node middle = at_centre ? *centre : cast_in(patch, a, b);
     const auto& c = patch.corners;
     const int right = patch.columns - left, lower = patch.rows - upper;
     add({patch.x, patch.y, left, upper, {c[0], &top, &west, &middle}});

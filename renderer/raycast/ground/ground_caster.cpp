@@ -42,6 +42,12 @@ double leave(double from, double per_rate, double low, double side) {
   return ((per_rate > 0.0 ? low + side : low) - from) * per_rate;
 }
 
+/// Parameter at which a coordinate that moves from `from` enters [low, low + 1].
+double enter(double from, double per_rate, double low) {
+  if (std::isinf(per_rate)) return -kNever;
+  return ((per_rate > 0.0 ? low : low + 1.0) - from) * per_rate;
+}
+
 /// A cell's bilinear surface: h = sw + a e + b n + c e n over (e, n) in [0, 1]^2.
 struct Bilinear {
   double sw, a, b, c;
@@ -91,8 +97,85 @@ double enter_cell(
   return clearance(to) <= 0.0 ? to : kNever;
 }
 
+/// The cell of a tile at a ray's parameter. Outside the tile, the nearest.
+struct CellAt {
+  int column, row;
+  double e, n;  ///< place in the cell, east and north
+
+  CellAt(const TileRay& ray, double t) {
+    e = ray.column + t * ray.d_column;
+    n = ray.row + t * ray.d_row;
+    column = std::clamp(static_cast<int>(e), 0, kTileCells - 1);
+    row = std::clamp(static_cast<int>(n), 0, kTileCells - 1);
+    e -= column;
+    n -= row;
+  }
+  bool operator==(const CellAt& other) const { return column == other.column && row == other.row; }
+};
+
+/// The most that the ground falls along one axis, per unit of a ray's parameter.
+/// @param low, high  limits of the slope
+double steepest_fall(double low, double high, double rate) {
+  return -std::min(low * rate, high * rate);
+}
+
+enum class Descent { kPasses, kHits, kUnsure };
+
+/// Finds where a ray meets a tile's ground if it falls more steeply than the ground does: then it
+/// meets the ground once at most, and Newton's method leads to the cell. The hit has the bits that
+/// a march finds; kUnsure where that is not certain.
+/// @param guess  a parameter near the answer
+Descent descend_tile(const GroundNode& node,
+                     const TileRay& ray,
+                     double from,
+                     double to,
+                     double guess,
+                     GroundHit& hit) {
+  const HeightTile& tile = *node.tile;
+  // Distances that rounding does not reach.
+  constexpr double kClearM = 1e-6;
+  constexpr double kInside = 1e-7;
+  // The ground falls no more steeply than this along the ray.
+  const double fall = steepest_fall(tile.lowest_slope.x(), tile.highest_slope.x(), ray.d_column) +
+                      steepest_fall(tile.lowest_slope.y(), tile.highest_slope.y(), ray.d_row);
+  if (!(-0.999 * ray.d_height > tile.spacing_m * fall)) return Descent::kUnsure;
+  double t = std::clamp(guess, from, to);
+  for (int i = 0; i < 6; ++i) {
+    const CellAt at(ray, t);
+    const Bilinear cell(tile, at.column, at.row);
+    const double clearance =
+        ray.height + t * ray.d_height - (cell.sw + cell.a * at.e + (cell.b + cell.c * at.e) * at.n);
+    if (t == to && clearance > kClearM) return Descent::kPasses;
+    const double rate = ray.d_height - (cell.a + cell.c * at.n) * ray.d_column -
+                        (cell.b + cell.c * at.e) * ray.d_row;
+    t = std::clamp(t - clearance / rate, from, to);
+    if (t == to || CellAt(ray, t) != at) continue;
+    const double in = std::max(
+        {from, enter(ray.column, ray.per_column, at.column), enter(ray.row, ray.per_row, at.row)});
+    const double out = std::min({to,
+                                 leave(ray.column, ray.per_column, at.column, 1.0),
+                                 leave(ray.row, ray.per_row, at.row, 1.0)});
+    const double depth = enter_cell(tile, ray, at.column, at.row, in, out);
+    const double margin = kInside * (1.0 + t);
+    if (!(depth > in + margin && depth < out - margin)) return Descent::kUnsure;
+    hit = hit_at(node, ray, at.column, at.row, depth);
+    return Descent::kHits;
+  }
+  return Descent::kUnsure;
+}
+
 /// Marches through one tile from parameter `from` to `to`; depth 0 if nothing is hit.
-GroundHit march_tile(const GroundNode& node, const TileRay& ray, double from, double to) {
+GroundHit march_tile(
+    const GroundNode& node, const TileRay& ray, double from, double to, double guess) {
+  GroundHit hit;
+  switch (descend_tile(node, ray, from, to, guess, hit)) {
+    case Descent::kHits:
+      return hit;
+    case Descent::kPasses:
+      return {};
+    case Descent::kUnsure:
+      break;
+  }
   const HeightTile& tile = *node.tile;
   // The ray does not pass above the whole tile.
   int k = kLog2TileCells - 1;
@@ -187,7 +270,7 @@ GroundHit GroundCaster::cast(const Eigen::Vector3d& origin,
     const GroundHit hit = descend(origin, direction, guess, near);
     if (!hit.sky()) return hit;
   }
-  return march(origin, direction, near);
+  return march(origin, direction, guess, near);
 }
 
 GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
@@ -236,6 +319,7 @@ GroundHit GroundCaster::descend(const Eigen::Vector3d& origin,
 
 GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
                               const Eigen::Vector3d& direction,
+                              double guess,
                               const GroundNode* near) const {
   // A square near the ray: the search for the next one begins there, not at the root. A falling ray
   // that does not pass above a square does not do so further inside either.
@@ -281,7 +365,7 @@ GroundHit GroundCaster::march(const Eigen::Vector3d& origin,
         break;
       }
       if (node->leaf) {
-        const GroundHit hit = march_tile(*node, TileRay(*node, origin, direction), t, end);
+        const GroundHit hit = march_tile(*node, TileRay(*node, origin, direction), t, end, guess);
         if (!hit.sky()) return hit;
         t = end;
         break;

@@ -27,7 +27,8 @@ struct GroundHit {
 /// method finds the point. Other rays are marched from square to square, skipping squares whose
 /// highest post they pass (maximum mipmaps: Tevs, Ihrke, Seidel, Maximum mipmaps for fast,
 /// accurate, and scalable dynamic height field rendering, I3D 2008), and meet the bilinear surface
-/// of a cell at a root of a quadratic.
+/// of a cell at a root of a quadratic. In a tile whose ground falls less steeply than the ray along
+/// its way, Newton's method leads to the same cell.
 class GroundCaster {
  public:
   explicit GroundCaster(const GroundTree& tree) : tree_(tree) {}
@@ -58,6 +59,7 @@ class GroundCaster {
                                   const GroundNode* near) const;
   [[nodiscard]] GroundHit march(const Eigen::Vector3d& origin,
                                 const Eigen::Vector3d& direction,
+                                double guess,
                                 const GroundNode* near) const;
 
   const GroundTree& tree_;

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace overfly::renderer::raycast {
 
@@ -80,17 +81,25 @@ void sample_posts(HeightTile& tile, const TexelMap& map) {
 void measure_heights(HeightTile& tile) {
   tile.lowest_m = tile.posts[0].height_m;
   for (const GroundPost& post : tile.posts) tile.lowest_m = std::min(tile.lowest_m, post.height_m);
-  float steepest_east = 0.0F, steepest_north = 0.0F;
+  // Along the sides of the cells; between them a bilinear surface is no steeper.
+  Eigen::Array2f least = Eigen::Array2f::Constant(std::numeric_limits<float>::max());
+  Eigen::Array2f most = -least;
   for (int row = 0; row < kTileCells; ++row) {
     for (int column = 0; column < kTileCells; ++column) {
       const float sw = tile.height(column, row), se = tile.height(column + 1, row);
       const float nw = tile.height(column, row + 1), ne = tile.height(column + 1, row + 1);
       tile.highest_m.set(0, {column, row}, std::max({sw, se, nw, ne}));
-      steepest_east = std::max({steepest_east, std::abs(se - sw), std::abs(ne - nw)});
-      steepest_north = std::max({steepest_north, std::abs(nw - sw), std::abs(ne - se)});
+      for (const Eigen::Array2f& steps : {Eigen::Array2f(se - sw, nw - sw), {ne - nw, ne - se}}) {
+        least = least.min(steps);
+        most = most.max(steps);
+      }
     }
   }
-  tile.steepest = std::hypot(steepest_east, steepest_north) / static_cast<float>(tile.spacing_m);
+  const auto spacing_m = static_cast<float>(tile.spacing_m);
+  tile.lowest_slope = least / spacing_m;
+  tile.highest_slope = most / spacing_m;
+  const Eigen::Array2f steepest = most.max(-least);
+  tile.steepest = std::hypot(steepest.x(), steepest.y()) / spacing_m;
   for (int k = 1; k <= kLog2TileCells; ++k) {
     const int half = 1 << (k - 1);
     for (int row = 0; row < kTileCells; row += 2 * half) {

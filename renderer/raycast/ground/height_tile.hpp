@@ -119,6 +119,10 @@ struct HeightTile {
   SquareTable<1> deviation_m;
   float hidden_m = 0.0F;  ///< bound of the same for the ground between the posts
   float lowest_m = 0.0F;
+  /// Limits of the slopes to the east and to the north, d(height) / d(east) and d(height) /
+  /// d(north).
+  Eigen::Vector2f lowest_slope{0.0F, 0.0F};
+  Eigen::Vector2f highest_slope{0.0F, 0.0F};
   float steepest = 0.0F;  ///< bound of the slope's length between the posts
   std::uint64_t last_use = 0;
 

@@ -192,7 +192,7 @@ TEST_P(GrazingRays, MeetTheSameGroundAsCellByCell) {
   HeightField field(std::make_shared<ProceduralGround>(options));
   std::mt19937 random(21);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  int hits = 0, skies = 0;
+  int hits = 0, skies = 0, marched = 0;
   for (int view = 0; view < 3; ++view) {
     ViewSweep sweep;
     sweep.position = {400.0 * unit(random), 400.0 * unit(random), 160.0 + 100.0 * unit(random)};
@@ -223,10 +223,22 @@ TEST_P(GrazingRays, MeetTheSameGroundAsCellByCell) {
       if (hit.sky()) continue;
       // Bisection, and rays along a surface, find the root less exactly.
       ASSERT_NEAR(hit.depth, std::max(expected.depth, 0.05), 1e-6 * expected.depth + 1e-9) << where;
+      if (caster.meets_ground_once(direction)) continue;
+      ++marched;
+      for (const double guess : {0.2, 0.99, 1.0, 1.0 + 1e-9, 1.01, 3.0}) {
+        const GroundHit again = caster.cast(origin, direction, guess * hit.depth, hit.node);
+        ASSERT_EQ(again.depth, hit.depth) << where << ", guess " << guess;
+        ASSERT_EQ(again.node, hit.node) << where;
+        ASSERT_EQ(again.column, hit.column) << where;
+        ASSERT_EQ(again.row, hit.row) << where;
+        ASSERT_EQ(again.across, hit.across) << where;
+        ASSERT_EQ(again.up, hit.up) << where;
+      }
     }
   }
   EXPECT_GT(hits, 300);
   EXPECT_GT(skies, 5);
+  if (terrain.name != "plane") EXPECT_GT(marched, 200);
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrains, GrazingRays, ::testing::Range(0, 7));

@@ -86,6 +86,10 @@ TEST(HeightTile, HighestPostsAndSlopesAreBounds) {
     EXPECT_EQ(tile.highest_m.at(k, {column, row}), highest);
     const float rise = tile.height(column + 1, row) - tile.height(column, row);
     EXPECT_LE(std::abs(rise) / tile.spacing_m, tile.steepest);
+    const float north = tile.height(column, row + 1) - tile.height(column, row);
+    const Eigen::Array2f slope = Eigen::Array2f(rise, north) / static_cast<float>(tile.spacing_m);
+    EXPECT_TRUE((slope >= tile.lowest_slope.array()).all());
+    EXPECT_TRUE((slope <= tile.highest_slope.array()).all());
   }
   float lowest = 1e9F;
   for (const GroundPost& post : tile.posts) lowest = std::min(lowest, post.height_m);
