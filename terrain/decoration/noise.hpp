@@ -44,7 +44,7 @@ inline int floor_int(float value) {
 
 /// Values in [0, 1) at the corners of a cell of the lattice of noise().
 struct NoiseCorners {
-  float north_west, north_east, south_west, south_east;
+  float lower_left, lower_right, upper_left, upper_right;
 
   /// @param i, j  of the corner with the lowest coordinates
   static NoiseCorners of(int i, int j, std::uint32_t seed) {
@@ -57,7 +57,8 @@ struct NoiseCorners {
   [[nodiscard]] float at(float u, float v) const {
     const float s = u * u * (3.0F - 2.0F * u);
     const float t = v * v * (3.0F - 2.0F * v);
-    return 2.0F * lerp(lerp(north_west, north_east, s), lerp(south_west, south_east, s), t) - 1.0F;
+    return 2.0F * lerp(lerp(lower_left, lower_right, s), lerp(upper_left, upper_right, s), t) -
+           1.0F;
   }
 };
 

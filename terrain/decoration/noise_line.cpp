@@ -9,10 +9,10 @@ namespace {
 
 /// What is the same for all places of a line.
 struct LineOfCells {
-  const float* north;
-  const float* south;
+  const float* lower;
+  const float* upper;
   int first;  ///< their first lattice point
-  float t;    ///< share of the southern one
+  float t;    ///< share of the upper one
 };
 
 [[gnu::always_inline]] inline void interpolate_all(const LineOfCells& cells,
@@ -26,9 +26,9 @@ struct LineOfCells {
     const float u = from[k] - static_cast<float>(i);
     const float s = u * u * (3.0F - 2.0F * u);
     const int at = i - cells.first;
-    const float north = lerp(cells.north[at], cells.north[at + 1], s);
-    const float south = lerp(cells.south[at], cells.south[at + 1], s);
-    to[k] = 2.0F * lerp(north, south, cells.t) - 1.0F;
+    const float lower = lerp(cells.lower[at], cells.lower[at + 1], s);
+    const float upper = lerp(cells.upper[at], cells.upper[at + 1], s);
+    to[k] = 2.0F * lerp(lower, upper, cells.t) - 1.0F;
   }
 }
 
@@ -83,8 +83,8 @@ const Kernels& kernels() {
 NoiseLine::NoiseLine(float x_min, float x_max, std::uint32_t seed)
     : first_(floor_int(x_min)), seed_(seed) {
   const auto points = static_cast<std::size_t>(floor_int(x_max) + 2 - first_);
-  north_.units.resize(points);
-  south_.units.resize(points);
+  lower_.units.resize(points);
+  upper_.units.resize(points);
 }
 
 void NoiseLine::hash_line(LatticeLine& line, int j) const {
@@ -96,11 +96,11 @@ void NoiseLine::hash_line(LatticeLine& line, int j) const {
 void NoiseLine::sample(std::span<const float> x, float y, std::span<float> out) {
   const int j = floor_int(y);
   const float v = y - static_cast<float>(j);
-  if (north_.j == j + 1 || south_.j == j) std::swap(north_, south_);
-  hash_line(north_, j);
-  hash_line(south_, j + 1);
+  if (lower_.j == j + 1 || upper_.j == j) std::swap(lower_, upper_);
+  hash_line(lower_, j);
+  hash_line(upper_, j + 1);
   kernels().interpolate(
-      {north_.units.data(), south_.units.data(), first_, v * v * (3.0F - 2.0F * v)}, x, out);
+      {lower_.units.data(), upper_.units.data(), first_, v * v * (3.0F - 2.0F * v)}, x, out);
 }
 
 }  // namespace overfly::terrain::synthesis

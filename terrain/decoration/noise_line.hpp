@@ -30,8 +30,8 @@ class NoiseLine {
 
   int first_;  ///< lattice point of the first number
   std::uint32_t seed_;
-  LatticeLine north_;  ///< at floor(y)
-  LatticeLine south_;  ///< at floor(y) + 1
+  LatticeLine lower_;  ///< at floor(y)
+  LatticeLine upper_;  ///< at floor(y) + 1
 };
 
 }  // namespace overfly::terrain::synthesis

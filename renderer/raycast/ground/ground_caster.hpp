@@ -4,24 +4,10 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "renderer/raycast/ground/ground_hit.hpp"
 #include "renderer/raycast/ground/height_field.hpp"
 
 namespace overfly::renderer::raycast {
-
-struct GroundHit {
-  double depth = 0.0;  ///< the ray's parameter: origin + depth * direction; 0 = the sky
-  const GroundNode* node = nullptr;
-  int column = 0, row = 0;        ///< cell of the node's tile
-  double across = 0.0, up = 0.0;  ///< place in the cell, east and north, in [0, 1]
-
-  [[nodiscard]] bool sky() const { return node == nullptr; }
-  /// Place on the map, in texels of level 0.
-  [[nodiscard]] Eigen::Vector2d texel() const;
-  /// d(height) / d(east, north).
-  [[nodiscard]] Eigen::Vector2d slope() const;
-  /// d(texel) / d(east, north).
-  [[nodiscard]] Eigen::Matrix2d texels_per_m() const;
-};
 
 /// Casts rays onto a ground tree. A ray steeper than all ground meets it only once, and Newton's
 /// method finds the point. Other rays are marched from square to square, skipping squares whose
