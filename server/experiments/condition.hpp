@@ -13,7 +13,7 @@ namespace overfly::server::experiments {
 /// Values of a set of flights: name of a quantity -> one value for each flight that has it.
 using FlightValues = std::map<std::string, std::vector<double>>;
 
-/// The quantities that a condition may name, besides `success_rate`.
+/// The quantities that a condition may name in addition to `success_rate`.
 [[nodiscard]] const std::vector<std::string>& condition_quantities();
 
 /// A parsed condition. Grammar:

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 /// Debug images and map points of the estimators of a viewer's runs.
 constexpr std::size_t kMostFolders = 64;
 /// A folder that changed so recently may change again within the same tick of the file system's
-/// clock: it is listed anew.
+/// clock: it is listed again.
 constexpr std::chrono::seconds kSettled{2};
 
 std::vector<std::int64_t> numbers_in(const fs::path& folder) {

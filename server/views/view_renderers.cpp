@@ -13,7 +13,7 @@ namespace {
 /// Each keeps its tiles as textures: viewers can compare runs over this many worlds without
 /// reloading them.
 constexpr std::size_t kMaxRenderers = 4;
-/// Of a world whose frames can be made again without reading their scenario anew: as many as a
+/// Runs of one world whose frames can be made without reading their scenario again: as many as a
 /// viewer watches.
 constexpr std::size_t kMaxRuns = 16;
 /// Of each, for tiles in memory, and the same again for textures.

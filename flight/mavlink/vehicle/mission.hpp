@@ -31,7 +31,7 @@ inline constexpr std::size_t kMaxMissionItems = 5000;
 /// A mission as a ground station stored it.
 struct StoredMission {
   std::vector<MissionItem> items;     ///< item 0 is the home position
-  std::vector<std::string> warnings;  ///< what the file contains besides, which is not flown
+  std::vector<std::string> warnings;  ///< what else the file contains, which is not flown
 };
 
 /// Whether a file begins like a plan of QGroundControl. What cannot be read is left to the reader.

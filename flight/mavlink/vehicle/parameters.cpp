@@ -97,7 +97,7 @@ bool is_value_of(const HeldMessage& message, const std::string& name) {
   return message.is(MessageId::kParamValue) && message.reader().text(8, kMaxParameterName) == name;
 }
 
-/// What PARAM_REQUEST_LIST has brought so far.
+/// What has answered PARAM_REQUEST_LIST so far.
 struct Collected {
   std::size_t count = 0;  ///< that the vehicle states
   std::map<std::uint16_t, Parameter> by_index;

@@ -52,8 +52,8 @@ class CalibrationDesk {
   explicit CalibrationDesk(DeskOptions options)
       : options_(std::move(options)), store_(options_.store) {}
 
-  /// {"folders", "recordings", "cameras", "complete"}: what sessions can take images from, besides
-  /// scenarios and uploads. Reads the names in the data folders.
+  /// {"folders", "recordings", "cameras", "complete"}: what sessions can take images from, other
+  /// than scenarios and uploads. Reads the names in the data folders.
   [[nodiscard]] nlohmann::json sources_json() const;
 
   /// @return the id of the session

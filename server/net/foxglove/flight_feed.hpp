@@ -48,7 +48,7 @@ class FlightFeed {
   /// Sends what new subscriptions show now.
   void send_present(const std::vector<Channel>& channels);
 
-  /// Goes to another time: rows in between are left out, and everything is shown anew.
+  /// Goes to another time: rows in between are left out, and everything is sent again.
   void seek(std::int64_t t_ns);
   bool go_live();
   /// Errors: as server::check_alignment.

@@ -106,7 +106,7 @@ TEST_P(SlicedLogs, AreTheSameWithAndWithoutAnIndex) {
     ASSERT_TRUE(indexed.ok()) << indexed.error().message;
     std::uint64_t read_bytes = 0;
     for (const FileRange& part : indexed->parts) read_bytes += part.end - part.begin;
-    // 20 s besides the slice: in DataFlash a seventh of the flight.
+    // 20 s in addition to the slice: in DataFlash a seventh of the flight.
     EXPECT_LT(read_bytes, kIndexedLogBytes / 3);
     ASSERT_EQ(indexed->streams.size(), whole->streams.size());
     for (std::size_t i = 0; i < whole->streams.size(); ++i) {

@@ -105,7 +105,7 @@ TEST(PictureEncoder, PassesARecordedPictureOnWhereItFits) {
   sparing.sparing = true;
   const auto again = encoder.encode_file(file, 3, 300, sparing);
   ASSERT_TRUE(again);
-  EXPECT_LT(again->bytes->size(), jpeg->size()) << "the link is slow: encoded anew";
+  EXPECT_LT(again->bytes->size(), jpeg->size()) << "the link is slow: encoded again";
   EXPECT_EQ(again->width_px, 64);
   EXPECT_EQ(
       encoder.encode_file(folder.path() / "none.jpg", 3, 300, request_of(75, 64)).error().code,

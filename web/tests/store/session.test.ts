@@ -263,7 +263,7 @@ describe('Session', () => {
     expect(viewing.store.state.main).toBeNull();
   });
 
-  it('goes from one set of runs to another without watching anew what stays', () => {
+  it('goes from one set of runs to another without watching again what stays', () => {
     viewing.watch();
     viewing.session.showRuns(
       [

@@ -183,7 +183,7 @@ TEST(FoxgloveEndpoint, ClosesAClientThatDoesNotRead) {
   WebSocketClient slow(server.port(), options);
   const json channels = text_with_op(&slow, "advertise").at("channels");
   slow.send(subscribe_all(channels));
-  // Each seek sends everything anew.
+  // Each seek sends everything again.
   for (int i = 0; i < 400; ++i) {
     slow.send({{"op", "setParameters"},
                {"parameters", {{{"name", "t_s"}, {"value", i % 2 == 0 ? 1.5 : 0.5}}}}});

@@ -5,7 +5,7 @@ import { metresPerDegree, movedTo } from './mission_edit';
 import type { Mission } from './mission_item';
 import { isObject, planFromMission } from './plan_file';
 
-/** Settings of `flight.mission` besides the mission itself. */
+/** Settings of `flight.mission` other than the mission itself. */
 export interface FlightSettings {
   airframe: string;
   airspeed_m_s: number;

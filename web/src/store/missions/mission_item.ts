@@ -52,7 +52,7 @@ export interface Home {
 export interface Mission {
   home: Home;
   items: readonly MissionItem[];
-  /** What the plan contains besides: fence, rally points, settings of the ground station. */
+  /** What else the plan contains: fence, rally points, settings of the ground station. */
   rest: JsonObject;
 }
 

@@ -11,7 +11,7 @@ export interface DecoderEvents {
   /** Shown, or not to be shown any more. */
   settled(streamId: number, sequence: number): void;
   failed(text: string): void;
-  /** A video picture is missing: the chain must begin anew. */
+  /** A video picture is missing: the chain must start again with a key picture. */
   lost(streamId: number): void;
   /** Video fails again and again. */
   videoFailed(): void;

@@ -1,5 +1,5 @@
 // The form of a scenario's section: a row for each value, frames for what belongs together. Controls
-// are made anew only if the form has other rows, so that typing is not disturbed.
+// are made again only if the form has other rows, so that typing is not disturbed.
 import type { FieldError } from '../../protocol/field_errors';
 import type { Json } from '../../protocol/rest_types';
 import type {

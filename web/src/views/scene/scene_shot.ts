@@ -1,4 +1,4 @@
-// Saves the 3D view as a picture file: drawn anew in its largest size, with labels and attribution.
+// Saves the 3D view as a picture file: drawn again in its largest size, with labels and attribution.
 import { picturesOf } from '../../connection/stream_client';
 import { formatTime } from '../../store/format';
 import { placeLabels } from '../../store/scene/scene_labels';

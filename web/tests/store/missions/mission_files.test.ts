@@ -47,7 +47,7 @@ describe('plans of QGroundControl', () => {
     ]);
   });
 
-  it('count jumps anew after an item was removed', () => {
+  it('count jumps again after an item was removed', () => {
     const mission = read(kPlan);
     const fewer = { ...mission, items: mission.items.slice(1) };
     const plan = planFromMission(fewer)['mission'] as { items: { doJumpId?: number }[] };

@@ -111,7 +111,7 @@ describe('PictureDecoder', () => {
     expect(lost).toEqual([1]);
   });
 
-  it('begins anew with a key picture where decoding is too slow', () => {
+  it('starts again with a key picture where decoding is too slow', () => {
     const { pictures, lost, videos } = decoder();
     pictures.push('camera', video(1, true));
     if (videos[0]) videos[0].waiting = 9;
