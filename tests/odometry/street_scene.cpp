@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/odometry/grey_noise.hpp"
+
 namespace overfly::odometry::testing {
 namespace {
 
@@ -74,8 +76,7 @@ Image Street::render(const PinholeCamera& camera,
                      double noise,
                      std::uint64_t noise_seed) const {
   Image image(camera.width_px, camera.height_px, 1, 0);
-  std::mt19937_64 rng(noise_seed);
-  std::normal_distribution<double> grey(0.0, std::max(noise, 1e-9));
+  GreyNoise grey_noise(noise, noise_seed);
   const Eigen::Matrix3d R = T_world_camera.rotation.toRotationMatrix();
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
@@ -86,7 +87,8 @@ Image Street::render(const PinholeCamera& camera,
         const double footprint_m = hit.along / camera.fx_px / std::sqrt(std::max(hit.cosine, 0.02));
         value = texture_.sample(hit.place_m.x(), hit.place_m.y(), footprint_m);
       }
-      image.at(x, y) = static_cast<std::uint8_t>(std::clamp(value + grey(rng) + 0.5, 0.0, 255.0));
+      image.at(x, y) =
+          static_cast<std::uint8_t>(std::clamp(value + grey_noise() + 0.5, 0.0, 255.0));
     }
   }
   return image;

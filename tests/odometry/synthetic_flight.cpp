@@ -1,9 +1,12 @@
 #include "tests/odometry/synthetic_flight.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <random>
 #include <utility>
+
+#include "tests/odometry/grey_noise.hpp"
 
 namespace overfly::odometry::testing {
 namespace {
@@ -42,6 +45,13 @@ float bilinear_repeated(const Image& image, double x, double y) {
          ay * ((1.0F - ax) * lower[x0] + ax * lower[x1]);
 }
 
+/// Hills and valleys, from -1 to 1.
+template <typename Real>
+Real relief_at(Real east_m, Real north_m) {
+  return Real(0.5) *
+         (std::sin(east_m / 90) * std::cos(north_m / 110) + std::sin((east_m + north_m) / 60));
+}
+
 /// Roll that follows rectangles of bank with a limited rate and smooth ends.
 double bank_at(const SyntheticFlightOptions& options, double t_s) {
   const double t = t_s - options.straight_s;
@@ -65,9 +75,9 @@ double bank_at(const SyntheticFlightOptions& options, double t_s) {
 
 SyntheticGround::SyntheticGround(Image texture, double texel_m, double relief_m)
     : texel_m_(texel_m), relief_m_(relief_m) {
-  mips_.push_back(std::move(texture));
-  while (std::min(mips_.back().width_px, mips_.back().height_px) >= 16) {
-    mips_.push_back(halved(mips_.back()));
+  mips_.push_back({std::move(texture), 1.0 / texel_m});
+  while (std::min(mips_.back().image.width_px, mips_.back().image.height_px) >= 16) {
+    mips_.push_back({halved(mips_.back().image), 0.5 * mips_.back().per_m});
   }
 }
 
@@ -106,22 +116,22 @@ SyntheticGround SyntheticGround::procedural(std::uint64_t seed,
 }
 
 double SyntheticGround::height_m(double east_m, double north_m) const {
-  if (relief_m_ == 0.0) return 0.0;
-  return 0.5 * relief_m_ *
-         (std::sin(east_m / 90.0) * std::cos(north_m / 110.0) +
-          std::sin((east_m + north_m) / 60.0));
+  return relief_m_ * relief_at(east_m, north_m);
 }
 
 float SyntheticGround::sample(double east_m, double north_m, double footprint_m) const {
-  const double level = std::max(0.0F, std::log2(static_cast<float>(footprint_m / texel_m_)));
-  const auto fine = std::min(static_cast<std::size_t>(level), mips_.size() - 1);
-  const std::size_t coarse = std::min(fine + 1, mips_.size() - 1);
-  const auto at = [&](std::size_t mip) {
-    const double size = texel_m_ * static_cast<double>(std::uint64_t{1} << mip);
-    return bilinear_repeated(mips_[mip], east_m / size - 0.5, -north_m / size - 0.5);
+  const auto texels = std::max(1.0F, static_cast<float>(footprint_m / texel_m_));
+  // Between powers of two the share of the coarser level grows in proportion to the footprint.
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(texels);
+  const std::size_t fine = std::min<std::size_t>((bits >> 23U) - 127U, mips_.size() - 1);
+  const float share = fine + 1 < mips_.size()
+                          ? std::bit_cast<float>((bits & 0x7fffffU) | 0x3f800000U) - 1.0F
+                          : 0.0F;
+  const auto at = [&](const Mip& mip) {
+    return bilinear_repeated(mip.image, east_m * mip.per_m - 0.5, -north_m * mip.per_m - 0.5);
   };
-  const auto share = static_cast<float>(std::min(1.0, level - static_cast<double>(fine)));
-  return (1.0F - share) * at(fine) + (share > 0.0F ? share * at(coarse) : 0.0F);
+  const float grey = at(mips_[fine]);
+  return share > 0.0F ? grey + share * (at(mips_[fine + 1]) - grey) : grey;
 }
 
 const std::vector<Eigen::Vector3d>& SyntheticGround::rays_of(const CameraModel& camera) const {
@@ -137,7 +147,7 @@ const std::vector<Eigen::Vector3d>& SyntheticGround::rays_of(const CameraModel& 
   rays_.clear();
   for (int y = 0; y < pinhole.height_px; ++y) {
     for (int x = 0; x < pinhole.width_px; ++x) {
-      rays_.push_back(camera.ray(Eigen::Vector2d(x, y)).value());
+      rays_.push_back(camera.ray(Eigen::Vector2d(x, y)).value().normalized());
     }
   }
   return rays_;
@@ -150,39 +160,30 @@ Image SyntheticGround::render(const CameraModel& camera_model,
   const PinholeCamera& camera = camera_model.pinhole();
   const std::vector<Eigen::Vector3d>& rays = rays_of(camera_model);
   Image image(camera.width_px, camera.height_px, 1, 200);
-  std::mt19937_64 rng(noise_seed);
+  GreyNoise grey_noise(noise, noise_seed);
   const Eigen::Matrix3d R = T_world_camera.rotation.toRotationMatrix();
   const Eigen::Vector3d& eye = T_world_camera.translation;
+  const double per_focal = 1.0 / camera.fx_px;
   double ground_m = 0.0;  // height of the ground at the previous pixel
-  for (int y = 0; y < camera.height_px; ++y) {
-    for (int x = 0; x < camera.width_px; ++x) {
-      const Eigen::Vector3d ray =
-          R * rays[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
-                   static_cast<std::size_t>(x)];
-      if (ray.z() > -0.02) continue;  // sky
-      double along = (ground_m - eye.z()) / ray.z();
-      if (relief_m_ != 0.0) {
-        for (int i = 0; i < 6; ++i) {
-          const double before_m = ground_m;
-          ground_m = height_m(eye.x() + along * ray.x(), eye.y() + along * ray.y());
-          along = (ground_m - eye.z()) / ray.z();
-          if (std::abs(ground_m - before_m) < 1e-3) break;
-        }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Eigen::Vector3d ray = R * rays[i];
+    if (ray.z() > -0.02) continue;  // sky
+    double along = (ground_m - eye.z()) / ray.z();
+    if (relief_m_ != 0.0) {
+      for (int round = 0; round < 6; ++round) {
+        const double before_m = ground_m;
+        // Single precision is right to a tenth of a millimetre.
+        ground_m = relief_m_ * relief_at(static_cast<float>(eye.x() + along * ray.x()),
+                                         static_cast<float>(eye.y() + along * ray.y()));
+        along = (ground_m - eye.z()) / ray.z();
+        if (std::abs(ground_m - before_m) < 1e-3) break;
       }
-      // The footprint of a pixel, mean of along and across the slope.
-      const double footprint = along * ray.norm() / camera.fx_px / std::sqrt(-ray.z() / ray.norm());
-      float value = sample(eye.x() + along * ray.x(), eye.y() + along * ray.y(), footprint);
-      if (noise > 0.0) {
-        // Sum of four uniforms: variance 1/3.
-        const std::uint64_t bits = rng();
-        const double sum = static_cast<double>((bits & 0xffffU) + ((bits >> 16U) & 0xffffU) +
-                                               ((bits >> 32U) & 0xffffU) + (bits >> 48U)) /
-                               65535.0 -
-                           2.0;
-        value += static_cast<float>(noise * 1.732 * sum);
-      }
-      image.at(x, y) = static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
     }
+    // The footprint of a pixel, mean of along and across the slope.
+    const double footprint_m = along * per_focal / std::sqrt(static_cast<float>(-ray.z()));
+    float value = sample(eye.x() + along * ray.x(), eye.y() + along * ray.y(), footprint_m);
+    if (noise > 0.0) value += grey_noise();
+    image.data[i] = static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
   }
   return image;
 }

@@ -41,9 +41,14 @@ class SyntheticGround {
  private:
   [[nodiscard]] const std::vector<Eigen::Vector3d>& rays_of(const CameraModel& camera) const;
 
-  std::vector<Image> mips_;
+  struct Mip {
+    Image image;
+    double per_m;  ///< texels in a metre
+  };
+
+  std::vector<Mip> mips_;
   mutable CameraModel rays_camera_;
-  mutable std::vector<Eigen::Vector3d> rays_;  ///< of rays_camera_, row by row
+  mutable std::vector<Eigen::Vector3d> rays_;  ///< of rays_camera_, unit length, row by row
   double texel_m_;
   double relief_m_;
 };

@@ -5,9 +5,9 @@
 
 #include <cmath>
 #include <optional>
-#include <random>
 
 #include "core/time.hpp"
+#include "tests/odometry/grey_noise.hpp"
 #include "tests/odometry/synthetic_flight.hpp"
 #include "tests/odometry/test_frame.hpp"
 
@@ -42,10 +42,9 @@ void burn(Image& image) {
 /// No light, but the noise of the sensor.
 Image dark(std::uint64_t seed) {
   Image image(640, 480, 1);
-  std::mt19937_64 rng(seed);
-  std::normal_distribution<double> noise(0.0, 15.0);
+  testing::GreyNoise noise(15.0, seed);
   for (std::uint8_t& value : image.data) {
-    value = static_cast<std::uint8_t>(std::max(0.0, noise(rng)));
+    value = static_cast<std::uint8_t>(std::max(0.0F, noise()));
   }
   return image;
 }
