@@ -1,35 +1,30 @@
 // What the users of FFmpeg's libraries share: owners of its objects, its error texts, and decoded
-// frames as grey images.
+// frames as grey images. load_ffmpeg must have succeeded.
 #pragma once
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libswscale/swscale.h>
-}
 
 #include <memory>
 #include <string>
 
 #include "core/camera/image.hpp"
 #include "core/result.hpp"
+#include "server/imagery/video/ffmpeg_library.hpp"
 
 namespace overfly::server {
 
 struct FormatCloser {
-  void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
+  void operator()(AVFormatContext* context) const { ffmpeg().avformat_close_input(&context); }
 };
 struct CodecCloser {
-  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
+  void operator()(AVCodecContext* context) const { ffmpeg().avcodec_free_context(&context); }
 };
 struct PacketCloser {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(AVPacket* packet) const { ffmpeg().av_packet_free(&packet); }
 };
 struct FrameCloser {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVFrame* frame) const { ffmpeg().av_frame_free(&frame); }
 };
 struct ScalerCloser {
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+  void operator()(SwsContext* scaler) const { ffmpeg().sws_freeContext(scaler); }
 };
 
 inline constexpr int kMostFrameSidePx = 8192;

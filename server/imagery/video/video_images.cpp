@@ -21,8 +21,8 @@ constexpr const char* kFormats = "matroska,webm,mov,mp4,m4a,3gp,3g2,mj2,avi,mpeg
 
 struct IoCloser {
   void operator()(AVIOContext* context) const {
-    av_freep(&context->buffer);
-    avio_context_free(&context);
+    ffmpeg().av_freep(&context->buffer);
+    ffmpeg().avio_context_free(&context);
   }
 };
 /// The file as FFmpeg reads it.
@@ -104,18 +104,18 @@ class VideoImages final : public ImageSource {
   }
 
   Status open_container() {
-    auto* buffer = static_cast<unsigned char*>(av_malloc(kIoBytes));
+    auto* buffer = static_cast<unsigned char*>(ffmpeg().av_malloc(kIoBytes));
     AVIOContext* io =
         buffer == nullptr
             ? nullptr
-            : avio_alloc_context(
+            : ffmpeg().avio_alloc_context(
                   buffer, kIoBytes, 0, &file_, &OpenFile::read, nullptr, &OpenFile::seek);
     if (io == nullptr) {
-      av_free(buffer);
+      ffmpeg().av_free(buffer);
       return Error{ErrorCode::kInternal, name_.string() + ": out of memory"};
     }
     io_.reset(io);
-    AVFormatContext* context = avformat_alloc_context();
+    AVFormatContext* context = ffmpeg().avformat_alloc_context();
     if (context == nullptr) return Error{ErrorCode::kInternal, name_.string() + ": out of memory"};
     context->pb = io;
     context->flags |= AVFMT_FLAG_CUSTOM_IO;
@@ -123,15 +123,15 @@ class VideoImages final : public ImageSource {
     context->interrupt_callback = {
         [](void* self) { return is_cancelled(static_cast<VideoImages*>(self)->cancel_) ? 1 : 0; },
         this};
-    context->format_whitelist = av_strdup(kFormats);
-    context->codec_whitelist = av_strdup(kVideoDecoders);
-    context->protocol_whitelist = av_strdup("none");
+    context->format_whitelist = ffmpeg().av_strdup(kFormats);
+    context->codec_whitelist = ffmpeg().av_strdup(kVideoDecoders);
+    context->protocol_whitelist = ffmpeg().av_strdup("none");
     context->max_streams = 16;
     // Frees the context if it fails.
-    int code = avformat_open_input(&context, nullptr, nullptr, nullptr);
+    int code = ffmpeg().avformat_open_input(&context, nullptr, nullptr, nullptr);
     if (code < 0) return unreadable("is neither a log nor a video: " + ffmpeg_text(code));
     format_.reset(context);
-    code = avformat_find_stream_info(context, nullptr);
+    code = ffmpeg().avformat_find_stream_info(context, nullptr);
     if (code < 0) return unreadable("has no readable streams: " + ffmpeg_text(code));
     for (unsigned i = 0; i < context->nb_streams && stream_ == nullptr; ++i) {
       AVStream* const stream = context->streams[i];
@@ -155,7 +155,7 @@ class VideoImages final : public ImageSource {
   [[nodiscard]] std::optional<std::int64_t> time_ns(std::int64_t stamp) const {
     if (stamp == AV_NOPTS_VALUE) return std::nullopt;
     const std::int64_t t_ns =
-        av_rescale_q(stamp, stream_->time_base, AVRational{1, static_cast<int>(kNsPerS)});
+        ffmpeg().av_rescale_q(stamp, stream_->time_base, AVRational{1, static_cast<int>(kNsPerS)});
     if (t_ns < 0 || t_ns > kLatestNs) return std::nullopt;
     return t_ns;
   }
@@ -164,12 +164,12 @@ class VideoImages final : public ImageSource {
   Status list_frames() {
     std::uint64_t without_time = 0;
     int code = 0;
-    while ((code = av_read_frame(format_.get(), decoder_.packet.get())) >= 0) {
+    while ((code = ffmpeg().av_read_frame(format_.get(), decoder_.packet.get())) >= 0) {
       const bool own = decoder_.packet->stream_index == stream_->index;
       const std::optional<std::int64_t> t_ns = own ? time_ns(decoder_.packet->pts) : std::nullopt;
       if (t_ns) stamps_ns_.push_back(*t_ns);
       without_time += own && !t_ns ? 1 : 0;
-      av_packet_unref(decoder_.packet.get());
+      ffmpeg().av_packet_unref(decoder_.packet.get());
       if (stamps_ns_.size() > kMaxVideoFrames) {
         return unreadable("has more than " + std::to_string(kMaxVideoFrames) + " frames");
       }
@@ -188,11 +188,12 @@ class VideoImages final : public ImageSource {
   /// Moves to a key frame at or before a time.
   Status go_back(std::int64_t t_ns) {
     const std::int64_t stamp =
-        av_rescale_q(t_ns, AVRational{1, static_cast<int>(kNsPerS)}, stream_->time_base);
-    const int code = av_seek_frame(format_.get(), stream_->index, stamp, AVSEEK_FLAG_BACKWARD);
+        ffmpeg().av_rescale_q(t_ns, AVRational{1, static_cast<int>(kNsPerS)}, stream_->time_base);
+    const int code =
+        ffmpeg().av_seek_frame(format_.get(), stream_->index, stamp, AVSEEK_FLAG_BACKWARD);
     if (code < 0)
       return unreadable("cannot be read from " + std::to_string(s_from_ns(t_ns)) + " s");
-    avcodec_flush_buffers(decoder_.context.get());
+    ffmpeg().avcodec_flush_buffers(decoder_.context.get());
     ended_ = false;
     position_ns_.reset();
     return {};
@@ -201,7 +202,7 @@ class VideoImages final : public ImageSource {
   /// Decodes the next frame that has a time. @return false at the end
   Result<bool> decode_next() {
     while (true) {
-      const int code = avcodec_receive_frame(decoder_.context.get(), decoder_.frame.get());
+      const int code = ffmpeg().avcodec_receive_frame(decoder_.context.get(), decoder_.frame.get());
       if (code >= 0) {
         const auto t_ns = time_ns(decoder_.frame->best_effort_timestamp);
         if (!t_ns) continue;
@@ -210,16 +211,16 @@ class VideoImages final : public ImageSource {
       }
       if (code == AVERROR_EOF || ended_) return false;
       if (code != AVERROR(EAGAIN)) return unreadable(ffmpeg_text(code));
-      if (av_read_frame(format_.get(), decoder_.packet.get()) < 0) {
+      if (ffmpeg().av_read_frame(format_.get(), decoder_.packet.get()) < 0) {
         ended_ = true;
-        (void)avcodec_send_packet(decoder_.context.get(), nullptr);
+        (void)ffmpeg().avcodec_send_packet(decoder_.context.get(), nullptr);
         continue;
       }
       // A packet that cannot be decoded costs its frame only.
       if (decoder_.packet->stream_index == stream_->index) {
-        (void)avcodec_send_packet(decoder_.context.get(), decoder_.packet.get());
+        (void)ffmpeg().avcodec_send_packet(decoder_.context.get(), decoder_.packet.get());
       }
-      av_packet_unref(decoder_.packet.get());
+      ffmpeg().av_packet_unref(decoder_.packet.get());
     }
   }
 
@@ -249,7 +250,7 @@ bool reads_videos() { return true; }
 
 Result<std::unique_ptr<ImageSource>> open_video_images(const std::filesystem::path& file,
                                                        const std::atomic<bool>* cancel) {
-  av_log_set_level(AV_LOG_QUIET);
+  if (Status status = load_ffmpeg(); !status) return status.error().in(file.string());
   Result<ReadableFile> opened = ReadableFile::open(file);
   if (!opened) return opened.error();
   const Result<std::uint64_t> size = opened->size_bytes();

@@ -6,16 +6,10 @@
 #include <utility>
 
 #ifdef OVERFLY_V4L2
-#include <dlfcn.h>
-
 extern "C" {
 #include <libavdevice/avdevice.h>
 }
 #endif
-
-extern "C" {
-#include <libavutil/opt.h>
-}
 
 #include "core/barrier.hpp"
 #include "core/cancel.hpp"
@@ -43,16 +37,15 @@ Access access_of(LiveKind kind) {
 }
 
 /// Makes FFmpeg's V4L2 format known. Its library is loaded only here: with it come 70 others for
-/// sound and windows, which would cost each start of the program a quarter of its time.
+/// sound and windows.
 Status register_v4l2() {
 #ifdef OVERFLY_V4L2
-  constexpr const char* kLibrary = "libavdevice.so." AV_STRINGIFY(LIBAVDEVICE_VERSION_MAJOR);
-  // Stays loaded: the format is part of it.
-  void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
-  void* const symbol = dlsym(library, "avdevice_register_all");
-  if (symbol == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
-  reinterpret_cast<decltype(&avdevice_register_all)>(symbol)();
+  const Result<void*> library =
+      load_library("libavdevice.so." AV_STRINGIFY(LIBAVDEVICE_VERSION_MAJOR));
+  if (!library) return library.error();
+  const Result<void*> function = find_function(*library, "avdevice_register_all");
+  if (!function) return function.error();
+  reinterpret_cast<decltype(&avdevice_register_all)> (*function)();
   return {};
 #else
   return Error{ErrorCode::kUnsupported,
@@ -62,11 +55,11 @@ Status register_v4l2() {
 
 class Options {
  public:
-  ~Options() { av_dict_free(&values_); }
+  ~Options() { ffmpeg().av_dict_free(&values_); }
   Options() = default;
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
-  void set(const char* name, const char* value) { av_dict_set(&values_, name, value, 0); }
+  void set(const char* name, const char* value) { ffmpeg().av_dict_set(&values_, name, value, 0); }
   AVDictionary** get() { return &values_; }
 
  private:
@@ -116,22 +109,22 @@ class VideoStream final : public LiveImages {
     const AVInputFormat* format = nullptr;
     if (address_.kind == LiveKind::kV4l2) {
       if (Status status = register_v4l2(); !status) return status.error().in(address_.name);
-      format = av_find_input_format("v4l2");
+      format = ffmpeg().av_find_input_format("v4l2");
       if (format == nullptr) {
         return Error{ErrorCode::kUnsupported,
                      address_.name + ": FFmpeg's libraries here open no V4L2 devices"};
       }
     }
-    AVFormatContext* context = avformat_alloc_context();
+    AVFormatContext* context = ffmpeg().avformat_alloc_context();
     if (context == nullptr) {
       return Error{ErrorCode::kInternal, address_.name + ": out of memory"};
     }
     const Access access = access_of(address_.kind);
     context->interrupt_callback = {
         [](void* self) { return static_cast<VideoStream*>(self)->interrupted() ? 1 : 0; }, this};
-    context->protocol_whitelist = av_strdup(access.protocols);
-    context->format_whitelist = av_strdup(access.formats);
-    context->codec_whitelist = av_strdup(kVideoDecoders);
+    context->protocol_whitelist = ffmpeg().av_strdup(access.protocols);
+    context->format_whitelist = ffmpeg().av_strdup(access.formats);
+    context->codec_whitelist = ffmpeg().av_strdup(kVideoDecoders);
     context->max_streams = 16;
     context->flags |= AVFMT_FLAG_NOBUFFER;
     context->probesize = 1 << 20;
@@ -140,11 +133,11 @@ class VideoStream final : public LiveImages {
     // Its media come over the connection that was allowed, not from elsewhere.
     if (address_.kind == LiveKind::kRtsp) options.set("rtsp_transport", "tcp");
     // Frees the context if it fails.
-    int code = avformat_open_input(&context, address_.url.c_str(), format, options.get());
+    int code = ffmpeg().avformat_open_input(&context, address_.url.c_str(), format, options.get());
     if (code < 0) return failed("cannot be opened", code);
     format_.reset(context);
     if (Status status = check_redirection(); !status) return status;
-    code = avformat_find_stream_info(context, nullptr);
+    code = ffmpeg().avformat_find_stream_info(context, nullptr);
     if (code < 0) return failed("sends no video that is read", code);
     for (unsigned i = 0; i < context->nb_streams; ++i) {
       AVStream* const stream = context->streams[i];
@@ -164,9 +157,9 @@ class VideoStream final : public LiveImages {
     if (address_.kind == LiveKind::kRtsp) return format_->url;
     if (address_.kind == LiveKind::kV4l2) return "";
     std::uint8_t* text = nullptr;
-    if (av_opt_get(format_->pb, "location", AV_OPT_SEARCH_CHILDREN, &text) < 0) return "";
+    if (ffmpeg().av_opt_get(format_->pb, "location", AV_OPT_SEARCH_CHILDREN, &text) < 0) return "";
     std::string location = reinterpret_cast<const char*>(text);
-    av_free(text);
+    ffmpeg().av_free(text);
     return location;
   }
 
@@ -188,14 +181,14 @@ class VideoStream final : public LiveImages {
   Error decode_until_end() {
     while (true) {
       allow_time();
-      const int code = av_read_frame(format_.get(), decoder_.packet.get());
+      const int code = ffmpeg().av_read_frame(format_.get(), decoder_.packet.get());
       if (code < 0) return failed("the camera has ended", code);
       // A packet that cannot be decoded costs its frame only.
       if (decoder_.packet->stream_index == stream_->index) {
-        (void)avcodec_send_packet(decoder_.context.get(), decoder_.packet.get());
+        (void)ffmpeg().avcodec_send_packet(decoder_.context.get(), decoder_.packet.get());
       }
-      av_packet_unref(decoder_.packet.get());
-      while (avcodec_receive_frame(decoder_.context.get(), decoder_.frame.get()) >= 0) {
+      ffmpeg().av_packet_unref(decoder_.packet.get());
+      while (ffmpeg().avcodec_receive_frame(decoder_.context.get(), decoder_.frame.get()) >= 0) {
         if ((decoder_.frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) continue;
         Result<Image> image = converter_.convert(*decoder_.frame);
         if (!image) return image.error().in(address_.name);
@@ -220,7 +213,7 @@ class VideoStream final : public LiveImages {
 
 Result<std::unique_ptr<LiveImages>> open_video_stream(const LiveAddress& address,
                                                       const std::atomic<bool>* cancel) {
-  av_log_set_level(AV_LOG_QUIET);
+  if (Status status = load_ffmpeg(); !status) return status.error().in(address.name);
   auto stream = std::make_unique<VideoStream>(address, cancel);
   if (Status status = stream->open(); !status) return status.error();
   return std::unique_ptr<LiveImages>(std::move(stream));
