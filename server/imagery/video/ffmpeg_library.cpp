@@ -7,6 +7,12 @@
 namespace overfly::server {
 namespace {
 
+Error not_loaded(const std::string& name) {
+  const char* const why = dlerror();
+  return {ErrorCode::kUnsupported,
+          "videos need FFmpeg's libraries: " + (why != nullptr ? why : name + " is missing")};
+}
+
 /// A library whose functions are looked up one by one; the first failure is kept.
 class LoadedLibrary {
  public:
@@ -52,14 +58,15 @@ const Result<Ffmpeg>& loaded() {
 }  // namespace
 
 Result<void*> load_library(const char* name) {
-  void* const library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
-  if (library == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
+  // At once: a function that a library lacks is an error here, and would end the program later.
+  void* const library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) return not_loaded(name);
   return library;
 }
 
 Result<void*> find_function(void* library, const char* name) {
   void* const function = dlsym(library, name);
-  if (function == nullptr) return Error{ErrorCode::kUnsupported, dlerror()};
+  if (function == nullptr) return not_loaded(name);
   return function;
 }
 

@@ -45,7 +45,8 @@ Status register_v4l2() {
   if (!library) return library.error();
   const Result<void*> function = find_function(*library, "avdevice_register_all");
   if (!function) return function.error();
-  reinterpret_cast<decltype(&avdevice_register_all)> (*function)();
+  const auto register_all = reinterpret_cast<decltype(&avdevice_register_all)>(*function);
+  register_all();
   return {};
 #else
   return Error{ErrorCode::kUnsupported,
