@@ -174,6 +174,26 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     await page.locator('#run-order').selectOption('newest');
   });
 
+  step('keeps the focus on a button whose entry is made again', async () => {
+    const focus = () => page.evaluate(() => document.activeElement?.ariaLabel);
+    const other = await page.locator('.run:not([aria-current=true])').elementHandle();
+    const id = await other.getAttribute('data-run');
+    const button = (role) => page.locator(`.run[data-run="${id}"] [data-role=${role}]`);
+    const label = await button('compare').getAttribute('aria-label');
+    await button('compare').focus();
+    await page.keyboard.press('Enter');
+    await dashboard.until((before) => document.activeElement?.ariaLabel !== before, label);
+    assert.equal(await focus(), await button('compare').getAttribute('aria-label'));
+    assert.ok(!(await other.evaluate((element) => element.isConnected)), 'it is another entry');
+    await page.keyboard.press('Enter');
+    await dashboard.until((before) => document.activeElement?.ariaLabel === before, label);
+    // Deletion asks on the same button, and gives up by itself.
+    await button('delete').focus();
+    await page.keyboard.press('Enter');
+    await dashboard.until(() => document.activeElement?.ariaLabel === 'Confirm deletion');
+    await dashboard.until(() => document.activeElement?.ariaLabel === 'Delete this run');
+  });
+
   step('keeps tags and a note of a run, and finds it by them', async () => {
     await page.locator(`.run[data-run="${kSlow}"] [data-role=edit-notes]`).click();
     await page.locator('.notes-form [data-role=tags]').fill('wind, for the paper');

@@ -286,15 +286,19 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
       `.run[data-run="${second}"] button[aria-label="Stop this run"]`,
     );
     await dashboard.untilStatus(second, 'running');
-    // The button keeps its place and the focus while the flight goes on.
+    const untilItFlies = async () => {
+      const bar = `.run[data-run="${second}"] .progress i`;
+      const before = await dashboard.page.locator(bar).getAttribute('style');
+      await dashboard.until(
+        ([bar, before]) => document.querySelector(bar).getAttribute('style') !== before,
+        [bar, before],
+      );
+    };
+    // The button keeps the focus while the flight goes on, and its place once the flight is known.
+    await stop.focus();
+    await untilItFlies();
     const button = await stop.elementHandle();
-    await button.focus();
-    const bar = `.run[data-run="${second}"] .progress i`;
-    const before = await dashboard.page.locator(bar).getAttribute('style');
-    await dashboard.until(
-      ([bar, before]) => document.querySelector(bar).getAttribute('style') !== before,
-      [bar, before],
-    );
+    await untilItFlies();
     assert.ok(await button.evaluate((element) => element === document.activeElement));
     await dashboard.screenshot('flying_in_real_time');
     await stop.click();

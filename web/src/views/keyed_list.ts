@@ -1,5 +1,5 @@
 // A list whose entries are kept as long as they show the same: a change of one of a thousand makes
-// one element, and does not take the focus from the others.
+// one element. A button keeps the focus if its entry is made again or moved.
 
 export interface KeyedEntry {
   id: string;
@@ -16,6 +16,24 @@ export class KeyedList {
   constructor(private readonly root: HTMLElement) {}
 
   show(entries: readonly KeyedEntry[]): void {
+    const focused = this.focused();
+    this.place(entries);
+    if (focused === null || this.root.contains(document.activeElement)) return;
+    const again = this.made.get(focused.id)?.element.querySelectorAll<HTMLElement>('button') ?? [];
+    [...again].find((one) => nameOf(one) === focused.name)?.focus({ preventScroll: true });
+  }
+
+  /** The entry and the name of the button that has the focus. */
+  private focused(): { id: string; name: string } | null {
+    const active = document.activeElement;
+    if (!(active instanceof HTMLButtonElement)) return null;
+    for (const [id, { element }] of this.made) {
+      if (element.contains(active)) return { id, name: nameOf(active) };
+    }
+    return null;
+  }
+
+  private place(entries: readonly KeyedEntry[]): void {
     const wanted = new Set(entries.map(({ id }) => id));
     for (const [id, { element }] of this.made) {
       if (wanted.has(id)) continue;
@@ -40,4 +58,9 @@ export class KeyedList {
       else this.root.insertBefore(element, place);
     }
   }
+}
+
+/** What a button is for, whatever it says: another one must not get the focus. */
+function nameOf(button: HTMLElement): string {
+  return button.dataset.role ?? button.getAttribute('aria-label') ?? button.innerText;
 }

@@ -55,6 +55,7 @@ export class RunEntries {
         'button',
         {
           class: 'run-open',
+          'data-role': 'open',
           title: run.error ?? run.problem ?? run.id,
           onclick: () => this.context.session.selectRun(run.id),
         },
@@ -152,6 +153,7 @@ export class RunEntries {
         class: 'icon-button compare',
         title: label,
         'aria-label': `${label}: ${run.title}`,
+        'data-role': 'compare',
         'aria-pressed': shown && watched > 1 ? 'true' : 'false',
         disabled: watched === 0 || (shown && watched === 1),
         onclick: () => {
@@ -189,6 +191,7 @@ export class RunEntries {
         class: 'icon-button',
         title: 'Stop this run; its data so far is kept',
         'aria-label': 'Stop this run',
+        'data-role': 'stop',
         onclick: () => void this.context.catalogue.cancel(run.id),
       },
       icon('stop'),
@@ -202,6 +205,7 @@ export class RunEntries {
         class: asked ? 'icon-button danger' : 'icon-button',
         title: asked ? 'Click again to delete this run for good' : 'Delete this run',
         'aria-label': asked ? 'Confirm deletion' : 'Delete this run',
+        'data-role': 'delete',
         onclick: () => {
           if (asked) void this.context.catalogue.remove(run.id);
           this.actions.confirm(asked ? null : run.id);
