@@ -1,6 +1,7 @@
 #include "evaluation/statistics/paired_bootstrap.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -34,7 +35,9 @@ PairedDifference paired_bootstrap(const std::vector<double>& a,
   // The sample itself counts as one resample on either side (Davison and Hinkley 1997, ch. 4).
   const double rarer = static_cast<double>(std::min(not_above, not_below) + 1) /
                        static_cast<double>(options.resamples + 1);
-  result.p_value = std::min(1.0, 2.0 * rarer);
+  // All n differences have the same sign with a probability of 2^(1 - n) where there is none.
+  const double least = std::exp2(1.0 - static_cast<double>(differences.size()));
+  result.p_value = std::clamp(2.0 * rarer, least, 1.0);
   return result;
 }
 

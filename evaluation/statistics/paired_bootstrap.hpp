@@ -19,7 +19,8 @@ struct PairedDifference {
   double low = 0.0;   ///< 2.5 % quantile
   double high = 0.0;  ///< 97.5 % quantile
   /// Two-sided: twice the share of resamples on the rarer side of 0, counting those at 0 on both,
-  /// within [2 / (resamples + 1), 1].
+  /// within [2 / (resamples + 1), 1]; at least 2^(1 - n), as in the sign test, because the
+  /// resamples of few differences of one sign are all on its side.
   double p_value = 1.0;
 };
 

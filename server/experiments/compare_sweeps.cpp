@@ -1,11 +1,15 @@
 #include "server/experiments/compare_sweeps.hpp"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "core/cancel.hpp"
 #include "core/text/number_text.hpp"
+#include "server/experiments/sweep_document.hpp"
+#include "server/experiments/sweep_extent.hpp"
 #include "server/experiments/sweep_results.hpp"
+#include "server/files/whole_file.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::experiments {
@@ -15,12 +19,20 @@ namespace fs = std::filesystem;
 
 using ResultsByFlight = std::map<std::string, const SweepResult*>;
 
+/// Of the sweep's file; without one every result counts.
+SweepExtent extent_of(const fs::path& sweep) {
+  const Result<nlohmann::json> document = read_json(sweep / "sweep.json", kMaxSweepBytes);
+  return SweepExtent(document ? *document : nlohmann::json());
+}
+
 /// Completed flights by what they have in common with the other sweep's.
 ResultsByFlight results_by_flight(const SweepResults& results,
+                                  const SweepExtent& extent,
                                   const std::string& estimator,
                                   std::size_t& failed) {
   ResultsByFlight by_flight;
   for (const SweepResult* result : results.newest()) {
+    if (!extent.contains(*result)) continue;
     if (!estimator.empty() && result->estimator != estimator) continue;
     if (!result->completed()) {
       ++failed;
@@ -56,6 +68,7 @@ Result<std::map<std::string, double>> values_of(const fs::path& sweep,
   if (alignment->second.rotation_deg) {
     values["rotation_rmse_deg"] = alignment->second.rotation_deg->rmse;
   }
+  std::erase_if(values, [](const auto& value) { return !std::isfinite(value.second); });
   return values;
 }
 
@@ -105,8 +118,10 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
   const Result<SweepResults> second = SweepResults::read(baseline);
   if (!second) return second.error();
   PairedSweeps paired;
-  const ResultsByFlight flights = results_by_flight(*first, estimator, paired.failed);
-  const ResultsByFlight references = results_by_flight(*second, estimator, paired.failed);
+  const ResultsByFlight flights =
+      results_by_flight(*first, extent_of(sweep), estimator, paired.failed);
+  const ResultsByFlight references =
+      results_by_flight(*second, extent_of(baseline), estimator, paired.failed);
   for (const auto& [flight, result] : flights) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const auto reference = references.find(flight);

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/measure/quantile.hpp"
+#include "evaluation/statistics/sample_quantile.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -162,7 +162,7 @@ Result<double> value_of_quantity(const Node& node, const FlightValues& flights) 
     return Error{ErrorCode::kInvalidArgument, name + ": no flight has a value"};
   }
   const std::vector<double>& values = found->second;
-  if (node.function == "median") return quantile(values, 0.5);
+  if (node.function == "median") return evaluation::sample_quantile(values, 0.5);
   if (node.function == "min") return *std::min_element(values.begin(), values.end());
   if (node.function == "max") return *std::max_element(values.begin(), values.end());
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/measure/quantile.hpp"
+#include "evaluation/statistics/sample_quantile.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::experiments {
@@ -34,15 +34,16 @@ void add_errors(const fs::path& folder,
   const auto& alignments = estimator->second.score.alignments;
   const auto alignment = alignments.find(mode);
   if (alignment == alignments.end()) return;
-  errors.positions_m.push_back(alignment->second.position_m.rmse);
-  if (alignment->second.rotation_deg) {
-    errors.rotations_deg.push_back(alignment->second.rotation_deg->rmse);
+  const evaluation::AlignmentScore& score = alignment->second;
+  if (std::isfinite(score.position_m.rmse)) errors.positions_m.push_back(score.position_m.rmse);
+  if (score.rotation_deg && std::isfinite(score.rotation_deg->rmse)) {
+    errors.rotations_deg.push_back(score.rotation_deg->rmse);
   }
 }
 
 std::optional<double> median_of(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
-  return quantile(values, 0.5);
+  return evaluation::sample_quantile(values, 0.5);
 }
 
 /// "X" without a successful flight; "-" if the alignment does not determine the error.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "server/experiments/explain/fault_places.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -43,6 +45,7 @@ double number(const Json& object, const char* name) { return object.value(name, 
 bool is_drop(const Json& fault) { return fault.at("kind") == "dropped_frames"; }
 
 bool concerns(const Json& document, const Json& fault, Cause cause) {
+  if (!is_in_flight(document, fault)) return false;
   const std::string camera = fault.value("camera", "");
   if (!camera.empty() && camera != camera_of(document).value("name", "")) return false;
   if (fault.at("kind") == "gps_outage") return false;
@@ -148,23 +151,30 @@ void scale(Json& object, const char* name, double factor) {
   if (object.contains(name)) object[name] = object.at(name).get<double>() * factor;
 }
 
+void scale_fault(Json& fault, double share) {
+  if (!is_drop(fault)) {
+    scale(fault, "duration_s", share);
+  } else if (fault.contains("probability")) {
+    scale(fault, "probability", share);
+  } else {
+    const double every = static_cast<double>(fault.value("every", std::int64_t{1}));
+    fault["every"] = static_cast<std::int64_t>(std::ceil(every / share));
+  }
+}
+
 void change_faults(Json& document, Cause cause, double share) {
   Json kept = Json::array();
   for (Json fault : document.value("faults", Json::array())) {
-    if (!concerns(document, fault, cause)) {
-      kept.push_back(fault);
-    } else if (share > 0.0) {
-      if (!is_drop(fault)) {
-        scale(fault, "duration_s", share);
-      } else if (fault.contains("probability")) {
-        scale(fault, "probability", share);
+    if (concerns(document, fault, cause)) {
+      if (share > 0.0) {
+        scale_fault(fault, share);
       } else {
-        const double every = static_cast<double>(fault.value("every", std::int64_t{1}));
-        fault["every"] = static_cast<std::int64_t>(std::ceil(every / share));
+        move_out_of_flight(fault);
       }
-      kept.push_back(fault);
     }
+    kept.push_back(fault);
   }
+  remove_last_out_of_flight(document, kept);
   document["faults"] = kept;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "server/experiments/explain/fault_places.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -27,9 +29,12 @@ Json part_faults(const Json& document, const CriticalPart& part) {
     const double at_s = fault.at("at_s").get<double>() - part.from_s;
     const bool ends = fault.contains("duration_s");
     const double end_s = ends ? at_s + fault.at("duration_s").get<double>() : part.to_s;
-    if (ends && end_s <= 0.0) continue;
-    fault["at_s"] = std::max(0.0, at_s);
-    if (ends) fault["duration_s"] = end_s - std::max(0.0, at_s);
+    if (ends && end_s <= 0.0) {
+      move_out_of_flight(fault);
+    } else {
+      fault["at_s"] = std::max(0.0, at_s);
+      if (ends) fault["duration_s"] = end_s - std::max(0.0, at_s);
+    }
     faults.push_back(fault);
   }
   return faults;
@@ -55,6 +60,10 @@ std::vector<CriticalPart> critical_parts(const evaluation::Score& score, double 
   const double latest_s =
       std::max(latest_start_s(duration_s), score.initialised_at_s.value_or(0.0));
   parts.push_back({0.0, std::max(to_s, std::min(duration_s, kShortestFlight_s)), latest_s});
+  // Several losses may add up to LOST, of which the part has only the first.
+  if (score.outcome == Outcome::kLost && to_s < duration_s) {
+    parts.push_back({0.0, duration_s, latest_s});
+  }
   return parts;
 }
 
@@ -80,6 +89,7 @@ Json part_document(const Json& document,
   made["start_s"] = start_s + part.from_s;
   made["duration_s"] = part.to_s - part.from_s;
   made["faults"] = part_faults(document, part);
+  remove_last_out_of_flight(made, made["faults"]);
   made["recording"] = {{"frames", false}, {"debug_hz", 0}};
   return made;
 }

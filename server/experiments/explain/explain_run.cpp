@@ -26,7 +26,6 @@ using Causes = std::vector<Cause>;
 
 /// Flights that are left for the tests of what was found.
 constexpr std::size_t kReservedFlights = 4;
-constexpr std::size_t kMostConfirmed = 2;
 constexpr int kMostMarginFlights = 3;
 std::vector<CauseChange> without_all(const Causes& causes, const Causes& but = {}) {
   std::vector<CauseChange> changes;
@@ -113,13 +112,20 @@ class Explainer {
     return options_.causes.empty() || holds(options_.causes, cause);
   }
 
+  void note_untried(Cause cause, const std::string& reason) {
+    const bool known = std::any_of(result_.untried.begin(),
+                                   result_.untried.end(),
+                                   [&](const UntriedCause& each) { return each.cause == cause; });
+    if (!known) result_.untried.push_back({cause, reason});
+  }
+
   /// Wanted causes that can be changed, the most suspicious first.
   [[nodiscard]] Causes changeable(bool disturbances) {
     Causes causes;
     for (const Cause cause : all_causes()) {
       if (!is_wanted(cause) || is_disturbance(cause) != disturbances) continue;
       if (const auto reason = why_unchangeable(document_, cause)) {
-        result_.untried.push_back({cause, *reason});
+        note_untried(cause, *reason);
       } else {
         causes.push_back(cause);
       }
@@ -246,11 +252,11 @@ class Explainer {
     return {};
   }
 
-  /// Flies what was found again with other random numbers.
+  /// Flies what was found again with other random numbers, as far as flights are left.
   Status confirm() {
     Causes found = result_.necessary;
-    if (found.size() > kMostConfirmed) found.resize(kMostConfirmed);
-    if (found.empty() || flights_.left() < 1 + found.size()) return {};
+    if (found.empty() || flights_.left() < 2) return {};
+    if (found.size() > flights_.left() - 1) found.resize(flights_.left() - 1);
     std::vector<PlannedReflight> plan = {{"as it was, other random numbers", {}, true}};
     for (const Cause cause : found) {
       plan.push_back({words_without(cause) + ", other random numbers", {without(cause)}, true});
@@ -260,12 +266,40 @@ class Explainer {
     result_.reproduced_with_other_seed = has_failed(flown->front());
     if (!*result_.reproduced_with_other_seed) return {};
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (has_failed((*flown)[i + 1])) std::erase(result_.necessary, found[i]);
+      if (has_failed((*flown)[i + 1])) withdraw(found[i]);
     }
+    if (result_.withdrawn.empty() || !result_.necessary.empty()) return {};
+    return change_with_other_seed();
+  }
+
+  /// A cause that was found by chance.
+  void withdraw(Cause cause) {
+    std::erase(result_.necessary, cause);
+    std::erase(result_.sufficient, cause);
+    result_.together.clear();
+    result_.withdrawn.push_back(cause);
+  }
+
+  /// Changes what every flight has, with the random numbers with which no disturbance explains the
+  /// failure.
+  Status change_with_other_seed() {
+    Causes causes = changeable(false);
+    if (causes.size() > flights_.left()) causes.resize(flights_.left());
+    std::vector<PlannedReflight> plan;
+    for (const Cause cause : causes) {
+      plan.push_back({words_without(cause) + ", other random numbers", {without(cause)}, true});
+    }
+    const Flown flown = fly(plan);
+    if (!flown) return flown.error();
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (has_survived((*flown)[i])) result_.necessary.push_back(causes[i]);
+    }
+    has_first_seed_causes_ = false;
     return {};
   }
 
   Status find_margin() {
+    if (!has_first_seed_causes_) return {};
     const Causes& causes = result_.necessary.empty() ? result_.sufficient : result_.necessary;
     const auto scaled = std::find_if(causes.begin(), causes.end(), [&](Cause cause) {
       return holds(result_.necessary, cause) && can_scale(document_, cause);
@@ -291,7 +325,8 @@ class Explainer {
   Explanation result_;
   Json document_;  ///< flies the critical part
   const Reflight* control_ = nullptr;
-  const Reflight* calm_ = nullptr;  ///< without any disturbance
+  const Reflight* calm_ = nullptr;     ///< without any disturbance
+  bool has_first_seed_causes_ = true;  ///< false: those found were all withdrawn
   Causes disturbances_;
   Causes tried_;
   Causes left_out_;  ///< not tried because of the limit, the least suspicious first

@@ -60,6 +60,9 @@ struct Explanation {
   std::vector<Cause> sufficient;
   /// Together these are enough, none of them alone.
   std::vector<Cause> together;
+  /// Without these the estimator survived, but with other random numbers it fails without them too:
+  /// they are not named.
+  std::vector<Cause> withdrawn;
   /// No single cause has to go, but without these two the estimator survives; empty or two.
   std::vector<Cause> pair;
   std::optional<CauseMargin> margin;

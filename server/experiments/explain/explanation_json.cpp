@@ -76,6 +76,7 @@ Json json_from(const Explanation& explanation, const std::filesystem::path& fold
           {"sufficient", names_of(explanation.sufficient)},
           {"necessary", names_of(explanation.necessary)},
           {"together", names_of(explanation.together)},
+          {"withdrawn", names_of(explanation.withdrawn)},
           {"pair", names_of(explanation.pair)},
           {"margin", margin},
           {"data_limited", explanation.data_limited},

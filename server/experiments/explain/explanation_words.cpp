@@ -65,6 +65,17 @@ void add_found(const Explanation& explanation, std::vector<std::string>& sentenc
   }
 }
 
+std::string other_seed_words(const Explanation& explanation) {
+  if (!*explanation.reproduced_with_other_seed) {
+    return "With other random numbers the estimator survives: chance decides this flight, and the "
+           "causes above are uncertain.";
+  }
+  if (explanation.withdrawn.empty()) return "With other random numbers the result is the same.";
+  return "It survived " + list_words(explanation.withdrawn, words_without) +
+         " by chance: with other random numbers it fails nevertheless, so that " +
+         (explanation.withdrawn.size() > 1 ? "these are" : "this is") + " not named as a cause.";
+}
+
 void add_limits(const Explanation& explanation, std::vector<std::string>& sentences) {
   if (explanation.margin) {
     const CauseMargin& margin = *explanation.margin;
@@ -73,10 +84,7 @@ void add_limits(const Explanation& explanation, std::vector<std::string>& senten
                         percent_words(margin.fails_share) + ".");
   }
   if (explanation.reproduced_with_other_seed) {
-    sentences.emplace_back(*explanation.reproduced_with_other_seed
-                               ? "With other random numbers the result is the same."
-                               : "With other random numbers the estimator survives: chance decides "
-                                 "this flight, and the causes above are uncertain.");
+    sentences.push_back(other_seed_words(explanation));
   }
   if (explanation.data_limited) {
     sentences.push_back("The data, not the estimator, is the limit. " + explanation.data_reason);

@@ -7,6 +7,7 @@
 
 #include "core/cancel.hpp"
 #include "server/experiments/sweep_document.hpp"
+#include "server/experiments/sweep_extent.hpp"
 #include "server/experiments/sweep_results.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scoring/run_metrics_json.hpp"
@@ -32,16 +33,6 @@ std::vector<ShownAxis> axes_of(const Json& sweep) {
     axes.push_back({name, text_or(axis, "label", name), text_or(axis, "unit", "")});
   }
   return axes;
-}
-
-std::vector<std::string> estimators_of(const Json& sweep) {
-  std::vector<std::string> names;
-  const auto found = sweep.find("estimator_names");
-  if (found == sweep.end() || !found->is_array()) return names;
-  for (const Json& name : *found) {
-    if (name.is_string()) names.push_back(name.get<std::string>());
-  }
-  return names;
 }
 
 /// Runs are read once, whatever the number of their estimators.
@@ -102,7 +93,7 @@ std::vector<Json> sorted_cells(const SweepScores& scores) {
       const Json right = b.value(axis.name, Json());
       if (left != right) return left < right;
     }
-    return false;
+    return a < b;
   };
   std::sort(cells.begin(), cells.end(), before);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -121,12 +112,13 @@ Result<SweepScores> read_sweep_scores(const fs::path& folder, const std::atomic<
     scores.title = text_or(*sweep, "title", "");
     scores.version = text_or(*sweep, "version", "");
     scores.axes = axes_of(*sweep);
-    scores.estimators = estimators_of(*sweep);
   }
+  const SweepExtent extent(*sweep);
+  scores.estimators = extent.estimators();
   RunReader runs(folder);
   for (const SweepResult* result : results->newest()) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
-    if (!result->cell.is_object()) continue;
+    if (!result->cell.is_object() || !extent.contains(*result)) continue;
     if (result->completed()) {
       add_flight(*result, runs, scores);
     } else {

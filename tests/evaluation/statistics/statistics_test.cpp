@@ -93,6 +93,27 @@ TEST(PairedBootstrap, IsRarelyWrongAboutPairsThatDoNotDiffer) {
   EXPECT_LT(wrong, 40);
 }
 
+/// The resamples of few differences of one sign are all on its side, which happens by chance.
+TEST(PairedBootstrap, IsRarelyWrongAboutFewPairs) {
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal;
+  constexpr int kSamples = 1000;
+  for (const int pairs : {2, 5, 6, 8}) {
+    int wrong = 0;
+    for (int k = 0; k < kSamples; ++k) {
+      std::vector<double> a;
+      for (int i = 0; i < pairs; ++i) a.push_back(normal(generator));
+      const PairedDifference difference =
+          paired_bootstrap(a, std::vector<double>(a.size(), 0.0), {400, 5});
+      EXPECT_GE(difference.p_value, std::exp2(1 - pairs));
+      wrong += difference.p_value <= 0.05 ? 1 : 0;
+    }
+    // Binomial(1000, 0.05) has a standard deviation of 7; the interval of few pairs is too short.
+    EXPECT_LT(wrong, 90) << pairs;
+  }
+  EXPECT_EQ(paired_bootstrap({1.0}, {0.0}).p_value, 1.0) << "one pair says nothing";
+}
+
 TEST(PairedBootstrap, IsTheSameForTheSameSeed) {
   const nlohmann::json cases = reference().at("bootstrap");
   const PairedDifference first = paired_bootstrap(cases[0].at("a"), cases[0].at("b"));

@@ -74,6 +74,19 @@ TEST(CompareSweeps, ALossOnAHardFlightIsNoGainOfAccuracy) {
   EXPECT_EQ(pairs.flights.at("initialised_at_s").size(), 3U);
 }
 
+TEST(CompareSweeps, FlightsThatTheSweepNoLongerHasAreLeftOut) {
+  const overfly::testing::TemporaryFolder folder;
+  for (const char* name : {"new", "old"}) {
+    for (const double height_m : {50.0, 100.0}) write_flight(folder.path() / name, {height_m, 1.0});
+  }
+  std::ofstream(folder.path() / "new" / "sweep.json") << R"({"axis_values": {"h": [100]}})";
+  const auto pairs =
+      pair_sweeps(folder.path() / "new", folder.path() / "old", "", AlignmentMode::kSim3);
+  ASSERT_TRUE(pairs) << pairs.error().message;
+  EXPECT_EQ(pairs->pairs, 1U);
+  EXPECT_EQ(pairs->without_pair, 1U);
+}
+
 TEST(CompareSweeps, FlightsWithoutAPairAndFailedOnesAreCounted) {
   const PairedSweeps pairs = paired({{50, std::nullopt, Outcome::kNotInitialised},
                                      {100, 1.0},

@@ -49,6 +49,16 @@ TEST(Condition, TheBaselineIsTheSameQuantityOfTheOtherFlights) {
   EXPECT_DOUBLE_EQ(judged("2 * max(position_rmse_m) < baseline").right, 4.0);
 }
 
+TEST(Condition, TheMedianOfTwoFlightsIsTheirMean) {
+  const auto condition = Condition::parse("median(position_rmse_m) > 1.1 * baseline");
+  ASSERT_TRUE(condition);
+  const auto verdict =
+      condition->evaluate({{"position_rmse_m", {1.0, 9.0}}}, {{"position_rmse_m", {1.0, 1.0}}});
+  ASSERT_TRUE(verdict);
+  EXPECT_DOUBLE_EQ(verdict->left, 5.0);
+  EXPECT_TRUE(verdict->holds);
+}
+
 TEST(Condition, OperatorsBindAsInArithmetic) {
   EXPECT_DOUBLE_EQ(judged("1 + 2 * 3 > 0").left, 7.0);
   EXPECT_DOUBLE_EQ(judged("(1 + 2) * 3 > 0").left, 9.0);

@@ -276,6 +276,32 @@ TEST_F(SweepTablesTest, DecidesNothingOnFewCells) {
   EXPECT_EQ(tables().differences[0].front().verdict, DifferenceVerdict::kTooFewCells);
 }
 
+TEST_F(SweepTablesTest, NeedsMoreThanEqualSignsOfFewCells) {
+  for (int k = 0; k < 5; ++k) {
+    add({"one", 50.0 * k, 0, 1.0 + k, 0.1});
+    add({"two", 50.0 * k, 0, 9.0 + k, 0.1});
+  }
+  // Five differences of one sign happen by chance once in 16 times.
+  EXPECT_EQ(tables().differences[0].front().verdict, DifferenceVerdict::kNotDecided);
+}
+
+TEST_F(SweepTablesTest, LeavesOutFlightsThatTheSweepNoLongerHas) {
+  std::ofstream(folder_ / "sweep.json")
+      << Json{{"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
+              {"axis_values", {{"h", {50, 100}}}},
+              {"repeats", {{"most", 2}}},
+              {"estimator_names", {"one"}}};
+  add({"one", 50, 0, 1.0, 0.1});
+  add({"one", 50, 1, 3.0, 0.1});
+  add({"one", 50, 2, 90.0, 0.1});   // a repeat of an earlier version of the sweep
+  add({"one", 150, 0, 90.0, 0.1});  // another height
+  add({"two", 50, 0, 90.0, 0.1});   // another estimator
+  const SweepTables made = tables();
+  ASSERT_EQ(made.rows.size(), 1U);
+  EXPECT_EQ(made.rows[0].estimator, "one");
+  EXPECT_EQ(made.rows[0].flights, 2);
+}
+
 TEST_F(SweepTablesTest, TakesTheNewestResultOfAFlight) {
   add({"one", 50, 0, 7.0, 0.1}, "z");  // an older version's, with a key that sorts last
   add({"one", 50, 0, 1.0, 0.1}, "a");

@@ -52,10 +52,13 @@ TEST(CauseChange, ACleanFlightHasNoDisturbance) {
 }
 
 TEST(CauseChange, FaultsAndDropsAreApart) {
-  const Json flown = document({kFaults});
+  const Json flown = document({kFaults, "duration_s=4"});
   const Json seen = without_cause(flown, Cause::kFaults);
-  ASSERT_EQ(seen.at("faults").size(), 2U);
-  EXPECT_EQ(seen.at("faults").at(0).at("kind"), "dropped_frames");
+  ASSERT_EQ(seen.at("faults").size(), 3U) << "the others keep their places and random numbers";
+  EXPECT_EQ(seen.at("faults").at(0).at("at_s"), 86400.0);
+  EXPECT_TRUE(why_unchangeable(seen, Cause::kFaults).has_value());
+  EXPECT_EQ(resolve_scenario(seen, {}, "/")->faults.at(2).seed,
+            resolve_scenario(flown, {}, "/")->faults.at(2).seed);
   const Json all = without_cause(flown, Cause::kDrops);
   ASSERT_EQ(all.at("faults").size(), 1U);
   EXPECT_EQ(all.at("faults").at(0).at("kind"), "blackout");

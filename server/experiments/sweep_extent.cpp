@@ -1,0 +1,55 @@
+#include "server/experiments/sweep_extent.hpp"
+
+#include <algorithm>
+
+namespace overfly::server::experiments {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<std::string> estimators_of(const Json& sweep) {
+  std::vector<std::string> names;
+  const auto found = sweep.find("estimator_names");
+  if (found == sweep.end() || !found->is_array()) return names;
+  for (const Json& name : *found) {
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  }
+  return names;
+}
+
+std::optional<int> most_repeats_of(const Json& sweep) {
+  const auto repeats = sweep.find("repeats");
+  if (repeats == sweep.end() || !repeats->is_object()) return std::nullopt;
+  const auto most = repeats->find("most");
+  if (most == repeats->end() || !most->is_number_integer()) return std::nullopt;
+  return most->get<int>();
+}
+
+}  // namespace
+
+SweepExtent::SweepExtent(const Json& sweep) {
+  if (!sweep.is_object()) return;
+  estimators_ = estimators_of(sweep);
+  most_repeats_ = most_repeats_of(sweep);
+  const auto values = sweep.find("axis_values");
+  if (values != sweep.end() && values->is_object()) axis_values_ = *values;
+}
+
+bool SweepExtent::contains(const SweepResult& result) const {
+  if (most_repeats_ && result.repeat >= *most_repeats_) return false;
+  const bool known =
+      std::find(estimators_.begin(), estimators_.end(), result.estimator) != estimators_.end();
+  return (known || estimators_.empty()) && (!axis_values_ || has_cell(result.cell));
+}
+
+bool SweepExtent::has_cell(const Json& cell) const {
+  if (!cell.is_object() || cell.size() != axis_values_->size()) return false;
+  const auto items = cell.items();
+  return std::all_of(items.begin(), items.end(), [&](const auto& item) {
+    const auto values = axis_values_->find(item.key());
+    return values != axis_values_->end() && values->is_array() &&
+           std::find(values->begin(), values->end(), item.value()) != values->end();
+  });
+}
+
+}  // namespace overfly::server::experiments

@@ -1,0 +1,31 @@
+// Which flights a sweep has, as sweep.json tells: its folder may have results of others, which were
+// flown before the sweep was changed.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/experiments/sweep_results.hpp"
+
+namespace overfly::server::experiments {
+
+class SweepExtent {
+ public:
+  /// What the document of a sweep.json lacks is no limit: then every result belongs to it.
+  explicit SweepExtent(const nlohmann::json& sweep);
+
+  /// Whether the sweep has its cell, repeat and estimator.
+  [[nodiscard]] bool contains(const SweepResult& result) const;
+  [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
+
+ private:
+  [[nodiscard]] bool has_cell(const nlohmann::json& cell) const;
+
+  std::vector<std::string> estimators_;
+  std::optional<nlohmann::json> axis_values_;  ///< axis name -> values
+  std::optional<int> most_repeats_;
+};
+
+}  // namespace overfly::server::experiments
