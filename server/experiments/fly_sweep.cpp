@@ -60,6 +60,7 @@ class SweepFlyer {
   Result<FlownSweep> fly() {
     while (!cancelled()) {
       if (Status status = start_flights(); !status) return stopped(status.error());
+      most_at_once_ = std::max(most_at_once_, executor_->flying());
       if (executor_->running() == 0 && !waiting_) break;
       if (Status status = take_ended(); !status) return stopped(status.error());
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -84,7 +85,8 @@ class SweepFlyer {
         Result<std::optional<DueFlight>> due = flown_.plan.next(flown_.results);
         if (!due) return due.error();
         waiting_ = std::move(*due);
-        show();
+        if (Status status = record_shared(); !status) return status;
+        if (waiting_ || flown_.plan.passed_flights() != flown_.progress.passed) show();
       }
       if (!waiting_) return {};
       const RunMemory memory = memory_of(waiting_->scenario);
@@ -213,6 +215,14 @@ class SweepFlyer {
     return {};
   }
 
+  /// Cells and repeats that have the flight of another one get a line each.
+  Status record_shared() {
+    for (const SweepResult& result : flown_.plan.take_shared(flown_.results)) {
+      if (Status status = flown_.results.add(result); !status) return status;
+    }
+    return {};
+  }
+
   void warn(const std::string& text) const {
     if (options_.warn) options_.warn(text);
   }
@@ -220,7 +230,6 @@ class SweepFlyer {
   void show() {
     SweepProgress& progress = flown_.progress;
     progress.passed = flown_.plan.passed_flights();
-    most_at_once_ = std::max(most_at_once_, executor_->flying());
     if (progress.flown > 0) {
       const auto rest =
           static_cast<double>(progress.most - std::min(progress.passed, progress.most));

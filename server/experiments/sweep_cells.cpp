@@ -16,13 +16,38 @@ Error too_many_cells() {
           "axes: give more than " + std::to_string(kMaxCells) + " cells"};
 }
 
+/// What a cell gets from a value of an axis, as text.
+std::size_t bytes_of(const SweepAxis& axis, const AxisValue& value) {
+  std::size_t bytes = axis.name.size() + value.value.dump().size();
+  for (const Override& change : value.changes) {
+    bytes += change.path.size() + change.value.dump().size();
+  }
+  return bytes;
+}
+
+/// Before that many cells are made, each with copies of its values.
+/// @pre each value of an axis is in as many cells as its others
+Status check_size(const Sweep& sweep, std::size_t cells) {
+  std::size_t bytes = 0;
+  for (const SweepAxis& axis : sweep.axes) {
+    std::size_t sum = 0;
+    for (const AxisValue& value : axis.values) sum += bytes_of(axis, value);
+    bytes += sum * cells / std::max<std::size_t>(axis.values.size(), 1);
+  }
+  if (bytes <= kMaxCellsBytes) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "axes: the values of " + std::to_string(cells) + " cells have " +
+                   std::to_string(bytes >> 20U) + " MiB: must be at most " +
+                   std::to_string(kMaxCellsBytes >> 20U) + " MiB"};
+}
+
 void add_value(SweepCell& cell, const SweepAxis& axis, const AxisValue& value) {
   cell.values[axis.name] = value.value;
   cell.changes.insert(cell.changes.end(), value.changes.begin(), value.changes.end());
 }
 
-Result<std::vector<SweepCell>> grid_cells(const Sweep& sweep) {
-  std::vector<SweepCell> cells{{Json::object(), {}}};
+Result<std::size_t> grid_size(const Sweep& sweep) {
+  std::size_t size = 1;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     const SweepAxis& axis = sweep.axes[i];
     if (axis.values.empty()) {
@@ -30,7 +55,15 @@ Result<std::vector<SweepCell>> grid_cells(const Sweep& sweep) {
           ErrorCode::kInvalidArgument,
           "axes." + std::to_string(i) + ".step: must be given, except with latin_hypercube"};
     }
-    if (cells.size() * axis.values.size() > kMaxCells) return too_many_cells();
+    size *= axis.values.size();
+    if (size > kMaxCells) return too_many_cells();
+  }
+  return size;
+}
+
+std::vector<SweepCell> grid_cells(const Sweep& sweep) {
+  std::vector<SweepCell> cells{{Json::object(), {}}};
+  for (const SweepAxis& axis : sweep.axes) {
     std::vector<SweepCell> longer;
     for (const SweepCell& cell : cells) {
       for (const AxisValue& value : axis.values) {
@@ -115,11 +148,13 @@ Status check_skip(const Sweep& sweep) {
 Result<std::vector<SweepCell>> cells_of(const Sweep& sweep) {
   if (sweep.chosen_cells) return *sweep.chosen_cells;
   if (Status status = check_skip(sweep); !status) return status.error();
-  Result<std::vector<SweepCell>> cells =
-      sweep.latin_hypercube ? drawn_cells(sweep, *sweep.latin_hypercube) : grid_cells(sweep);
-  if (!cells) return cells;
-  std::erase_if(*cells, [&](const SweepCell& cell) { return is_skipped(sweep, cell); });
-  if (cells->empty()) {
+  const std::optional<LatinHypercube>& drawn = sweep.latin_hypercube;
+  const Result<std::size_t> size = drawn ? Result<std::size_t>(drawn->cells) : grid_size(sweep);
+  if (!size) return size.error();
+  if (Status status = check_size(sweep, *size); !status) return status.error();
+  std::vector<SweepCell> cells = drawn ? drawn_cells(sweep, *drawn) : grid_cells(sweep);
+  std::erase_if(cells, [&](const SweepCell& cell) { return is_skipped(sweep, cell); });
+  if (cells.empty()) {
     return Error{ErrorCode::kInvalidArgument, "skip: must leave at least one cell"};
   }
   return cells;

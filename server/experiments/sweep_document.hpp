@@ -16,6 +16,8 @@ namespace overfly::server::experiments {
 
 /// Maximum number of cells of a sweep.
 inline constexpr std::size_t kMaxCells = 10'000;
+/// Maximum size of the values of all cells together, as text.
+inline constexpr std::size_t kMaxCellsBytes = std::size_t{64} << 20U;
 /// Maximum size of a sweep file.
 inline constexpr std::uint64_t kMaxSweepBytes = std::uint64_t{4} << 20U;
 
@@ -82,8 +84,8 @@ struct Sweep {
                                           const std::filesystem::path& folder);
 
 /// The cells in the order of the axes, the last axis changing fastest, without those to be skipped.
-/// Errors: kInvalidArgument for more than kMaxCells, a range without step in a grid, a `skip` with
-/// an unknown axis, and if no cell is left.
+/// Errors: kInvalidArgument for more than kMaxCells or kMaxCellsBytes, a range without step in a
+/// grid, a `skip` with an unknown axis, and if no cell is left.
 [[nodiscard]] Result<std::vector<SweepCell>> cells_of(const Sweep& sweep);
 
 /// The scenario of one flight: the seed increases by one with each repeat. With

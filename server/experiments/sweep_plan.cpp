@@ -82,13 +82,23 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
   return plan;
 }
 
+bool SweepPlan::is_flying(const std::string& key) const {
+  const auto found = flying_.find(key);
+  return found != flying_.end() && found->second;
+}
+
+bool SweepPlan::awaits_result(const State& state) const {
+  return std::any_of(state.keys.begin(), state.keys.end(), [&](const auto& estimator) {
+    return is_flying(estimator.second.back());
+  });
+}
+
 std::optional<std::size_t> SweepPlan::next_cell() const {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const State& state = states_[i];
-    const bool waits = sweep_->repeats.half_width && state.flying > 0;
-    if (state.finished || waits) continue;
-    if (!best || state.next_repeat < states_[*best].next_repeat) best = i;
+    if (state.finished || (best && state.next_repeat >= states_[*best].next_repeat)) continue;
+    if (!sweep_->repeats.half_width || !awaits_result(state)) best = i;
   }
   return best;
 }
@@ -123,7 +133,10 @@ Result<std::optional<DueFlight>> SweepPlan::flight_of(std::size_t cell,
     std::string key = result_key(flight, scenario->resolved.at("estimators").at(i));
     state.keys[name].push_back(key);
     const SweepResult* known = results.find(key);
-    if (known != nullptr && known->completed()) continue;
+    if ((known != nullptr && known->completed()) || flying_.contains(key)) {
+      shared_.push_back({cell, state.next_repeat, std::move(key)});
+      continue;
+    }
     kept.push_back(i);
     due.keys.push_back(std::move(key));
   }
@@ -133,6 +146,7 @@ Result<std::optional<DueFlight>> SweepPlan::flight_of(std::size_t cell,
   keep_estimators(*scenario, kept);
   due.scenario = std::move(*scenario);
   due.key = flight_id(due.keys);
+  for (const std::string& key : due.keys) flying_[key] = true;
   ++state.flying;
   return std::optional<DueFlight>(std::move(due));
 }
@@ -155,7 +169,29 @@ bool SweepPlan::shares_pictures(const DueFlight& flight) const {
   return second && picture_key(*second) == first;
 }
 
-void SweepPlan::over(const DueFlight& flight) { --states_[flight.cell].flying; }
+void SweepPlan::over(const DueFlight& flight) {
+  --states_[flight.cell].flying;
+  for (const std::string& key : flight.keys) flying_[key] = false;
+}
+
+std::vector<SweepResult> SweepPlan::take_shared(const SweepResults& results) {
+  std::vector<SweepResult> taken;
+  std::vector<Shared> flying;
+  for (Shared& shared : shared_) {
+    if (is_flying(shared.key)) {
+      flying.push_back(std::move(shared));
+      continue;
+    }
+    const SweepResult* known = results.find(shared.key);
+    if (known == nullptr) continue;
+    SweepResult own = *known;
+    own.cell = cells_[shared.cell].values;
+    own.repeat = shared.repeat;
+    if (!results.has(own)) taken.push_back(std::move(own));
+  }
+  shared_ = std::move(flying);
+  return taken;
+}
 
 std::size_t SweepPlan::most_flights() const {
   return cells_.size() * static_cast<std::size_t>(sweep_->repeats.most);

@@ -26,7 +26,8 @@ struct DueFlight {
 [[nodiscard]] bool has_enough(const RepeatRule& rule, int successes, int flights);
 
 /// Walks through the repeats of all cells: first all cells once, then all twice, ... Cells whose
-/// repeats stop by themselves fly one at a time.
+/// repeats stop by themselves fly one at a time. What several cells or repeats have in common (the
+/// seed of a repeat is also a value of an axis) is due once.
 class SweepPlan {
  public:
   /// Resolves the first repeat of every cell.
@@ -42,6 +43,9 @@ class SweepPlan {
   [[nodiscard]] bool shares_pictures(const DueFlight& flight) const;
   /// A flight from next() is over: its results are known, or it is given up.
   void over(const DueFlight& flight);
+  /// Results of flights for the other cells and repeats that have the same flight, as far as they
+  /// are known and `results` lacks them. Each is returned once.
+  [[nodiscard]] std::vector<SweepResult> take_shared(const SweepResults& results);
 
   [[nodiscard]] const std::vector<SweepCell>& cells() const { return cells_; }
   /// Flights of one estimator at most, of all cells together.
@@ -64,6 +68,12 @@ class SweepPlan {
     /// Estimator -> keys of its repeats, as far as they were reached.
     std::map<std::string, std::vector<std::string>> keys;
   };
+  /// A repeat of a cell that has the result of another flight.
+  struct Shared {
+    std::size_t cell = 0;  ///< index
+    int repeat = 0;
+    std::string key;
+  };
   SweepPlan(const Sweep& sweep, std::vector<SweepCell> cells)
       : sweep_(&sweep), cells_(std::move(cells)), states_(cells_.size()) {}
   /// Empty if the repeat needs no flight.
@@ -71,6 +81,9 @@ class SweepPlan {
   [[nodiscard]] bool is_open(std::size_t cell,
                              const std::string& estimator,
                              const SweepResults& results) const;
+  [[nodiscard]] bool is_flying(const std::string& key) const;
+  /// Whether the last repeat of a cell is still flown, by itself or by another cell.
+  [[nodiscard]] bool awaits_result(const State& state) const;
   /// The cell to be looked at next; empty if there is none now.
   [[nodiscard]] std::optional<std::size_t> next_cell() const;
 
@@ -78,6 +91,8 @@ class SweepPlan {
   std::vector<SweepCell> cells_;
   std::vector<State> states_;
   std::map<std::string, int> cells_with_pictures_;  ///< picture_key -> number of cells
+  std::map<std::string, bool> flying_;  ///< key of a flight that was due -> it is not over
+  std::vector<Shared> shared_;          ///< not returned by take_shared() yet
   std::vector<std::string> estimators_;
 };
 

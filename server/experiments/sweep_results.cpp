@@ -67,6 +67,12 @@ std::optional<SweepResult> result_from(const Json& line) {
   }
 }
 
+/// The same for other versions of the program and of the estimator.
+std::string flight_identity(const SweepResult& result) {
+  const Json flight = {result.cell, result.repeat, result.seed, result.estimator};
+  return flight.dump();
+}
+
 Error results_error(const fs::path& file, int number) {
   return {ErrorCode::kIo, file.string() + ": " + std::generic_category().message(number)};
 }
@@ -97,12 +103,10 @@ Result<SweepResults> SweepResults::read(const fs::path& folder) {
     const auto document = json_from_outside<Json>(line, results.file_.string());
     std::optional<SweepResult> result =
         document ? result_from(*document) : std::optional<SweepResult>();
-    const std::size_t number = results.lines_++;
     if (result) {
-      result->line = number;
-      std::string key = result->key;
-      results.by_key_.insert_or_assign(std::move(key), std::move(*result));
+      results.keep(std::move(*result));
     } else {
+      ++results.lines_;
       ++results.unreadable_lines_;
     }
   }
@@ -128,25 +132,30 @@ const SweepResult* SweepResults::find(const std::string& key) const {
   return found == by_key_.end() ? nullptr : &found->second;
 }
 
+bool SweepResults::has(const SweepResult& result) const {
+  const auto found = by_flight_.find(flight_identity(result));
+  return found != by_flight_.end() && found->second.key == result.key &&
+         found->second.error == result.error;
+}
+
+void SweepResults::keep(SweepResult result) {
+  result.line = lines_++;
+  by_flight_.insert_or_assign(flight_identity(result), result);
+  std::string key = result.key;
+  by_key_.insert_or_assign(std::move(key), std::move(result));
+}
+
 Status SweepResults::add(const SweepResult& result) {
   if (Status status = append_line(file_, json_of_result(result).dump() + "\n"); !status) {
     return status;
   }
-  SweepResult& added = by_key_[result.key];
-  added = result;
-  added.line = lines_++;
+  keep(result);
   return {};
 }
 
 std::vector<const SweepResult*> SweepResults::newest() const {
-  std::map<std::string, const SweepResult*> by_flight;
-  for (const auto& [key, result] : by_key_) {
-    const Json flight = {result.cell, result.repeat, result.seed, result.estimator};
-    const SweepResult*& kept = by_flight[flight.dump()];
-    if (kept == nullptr || kept->line < result.line) kept = &result;
-  }
   std::vector<const SweepResult*> newest;
-  for (const auto& [flight, result] : by_flight) newest.push_back(result);
+  for (const auto& [flight, result] : by_flight_) newest.push_back(&result);
   std::sort(newest.begin(), newest.end(), [](const SweepResult* a, const SweepResult* b) {
     return a->line < b->line;
   });

@@ -23,7 +23,7 @@
 #include "server/experiments/jobs/job_worker.hpp"
 #include "server/experiments/jobs/slurm_workers.hpp"
 #include "server/experiments/sweep_summary.hpp"
-#include "server/files/build_info.hpp"
+#include "server/files/program_identity.hpp"
 #include "server/files/whole_file.hpp"
 
 namespace overfly::app {
@@ -69,16 +69,13 @@ void show_sweep(ProgressDisplay& display, const experiments::SweepProgress& prog
 
 std::size_t default_jobs() { return std::max(1U, std::thread::hardware_concurrency() / 2); }
 
-/// Of the program, as jobs of a folder state it.
-std::string job_version() { return server::version() + " " + server::git_commit(); }
-
 using Executor = std::unique_ptr<experiments::FlightExecutor>;
 
 Result<Executor> open_executor(const SweepArguments& arguments,
                                const std::function<void(const std::string&)>& warn) {
   const fs::path sweep = fs::absolute(arguments.out);
   experiments::FolderExecutorOptions options;
-  options.version = job_version();
+  options.version = server::program_identity();
   options.lease_s = arguments.lease_s;
   options.warn = warn;
   if (arguments.executor == "slurm") {
@@ -155,7 +152,7 @@ int work(const WorkArguments& arguments) {
   experiments::WorkerOptions options;
   options.sweep = fs::absolute(arguments.sweep);
   options.program = "/proc/self/exe";
-  options.version = job_version();
+  options.version = server::program_identity();
   options.jobs = arguments.jobs == 0 ? default_jobs() : arguments.jobs;
   if (arguments.flights != 0) options.most_flights = arguments.flights;
   options.idle_s = arguments.idle_s;

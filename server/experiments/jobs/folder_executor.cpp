@@ -46,11 +46,14 @@ Status FolderExecutor::take_over() {
     if (usable && left_.emplace(job->flight, id).second) continue;
     if (Status status = folder_.withdraw(id); !status) return status;
   }
+  std::set<std::string> ids;
   std::set<std::string> holders;
   for (const auto& [flight, id] : left_) {
+    ids.insert(id);
     const Result<std::optional<std::string>> holder = folder_.holder(id);
     if (holder && *holder) holders.insert(**holder);
   }
+  folder_.remove_flights_except(ids);
   return folder_.remove_workers_except(holders);
 }
 
@@ -218,7 +221,9 @@ void FolderExecutor::stop() {
   };
   report(folder_.set_closed(true));
   for (const auto& [id, job] : jobs_) report(folder_.withdraw(id));
+  for (const auto& [flight, id] : left_) report(folder_.withdraw(id));
   jobs_.clear();
+  left_.clear();
   ended_.clear();
   if (options_.supply != nullptr) options_.supply->stop();
 }

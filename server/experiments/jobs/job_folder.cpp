@@ -40,6 +40,8 @@ bool is_flight_key(const std::string& name) {
   return !name.empty() && name.size() <= kLongest && is_hexadecimal(name);
 }
 
+constexpr const char* kRemoved = ".removed";
+
 bool is_worker_name(const std::string& name) {
   constexpr std::size_t kLongest = 128;
   return !name.empty() && name.size() <= kLongest &&
@@ -159,7 +161,18 @@ Status JobFolder::withdraw(const std::string& job) const {
   // In this order: a worker that takes the name again finds that the job is no longer open.
   if (Status status = remove_path(file("open", job)); !status) return status;
   if (Status status = release(job); !status) return status;
-  return remove_flight(job);
+  (void)remove_flight(job);  // It may fail while a worker still writes.
+  return {};
+}
+
+void JobFolder::remove_flights_except(const std::set<std::string>& jobs) const {
+  for (const char* extension : {"", ".txt", kRemoved}) {
+    const Result<std::vector<std::string>> written = jobs_in(folder_ / "flights", extension);
+    if (!written) return;
+    for (const std::string& job : *written) {
+      if (!jobs.contains(job)) (void)remove_flight(job);
+    }
+  }
 }
 
 Status JobFolder::release(const std::string& job) const {
@@ -167,7 +180,11 @@ Status JobFolder::release(const std::string& job) const {
 }
 
 Status JobFolder::remove_flight(const std::string& job) const {
-  if (Status status = remove_path(run(job)); !status) return status;
+  // Moved first: a process that still writes into the folder would add files as fast as they go.
+  const fs::path removed = file("flights", job, kRemoved);
+  if (Status status = remove_path(removed); !status) return status;
+  if (Status status = move_path(run(job), removed); !status) return status;
+  if (Status status = remove_path(removed); !status) return status;
   return remove_path(output(job));
 }
 

@@ -59,9 +59,12 @@ class JobFolder {
 
   /// Makes a flight available. Errors: kIo.
   [[nodiscard]] Status publish(const OpenJob& job) const;
-  /// Takes a job back: no worker can take it any more, one that flies it gives up, and files of an
-  /// unfinished flight are removed. Errors: kIo.
+  /// Takes a job back: no worker can take it any more, and one that flies it gives up. Files of an
+  /// unfinished flight are removed as far as no worker writes them; that one removes the rest.
+  /// Errors: kIo.
   [[nodiscard]] Status withdraw(const std::string& job) const;
+  /// Removes what flights of other jobs have written, as far as that is possible.
+  void remove_flights_except(const std::set<std::string>& jobs) const;
   /// Moves the run folder and the output of a delivered job to where the flight's belong.
   /// Errors: kIo.
   [[nodiscard]] Status move_flight(const std::string& job, const FlightJob& to) const;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "server/experiments/envelope/envelope.hpp"
 #include "server/experiments/sweep_folders.hpp"
@@ -184,6 +185,29 @@ TEST_F(FlySweep, RepeatsStopWhenTheRateIsKnown) {
   const auto rows = summary_of(*flown, folder(), evaluation::AlignmentMode::kSim3);
   EXPECT_EQ(rows[0].flights, 9);
   EXPECT_NEAR(rows[0].success_interval.low, 9.0 / (9.0 + 3.841458820694124), 1e-12);
+}
+
+TEST_F(FlySweep, ProgressIsShownWhenItChanges) {
+  write_program("sleep 0.5");
+  SweepOptions two_at_once = options(2);
+  std::size_t shown = 0;
+  two_at_once.progress = [&](const SweepProgress&) { ++shown; };
+  ASSERT_TRUE(fly_sweep(sweep(R"("axes": [])"), two_at_once).ok());
+  EXPECT_LE(shown, 4U) << "at the start, before and after the flight, and at the end";
+}
+
+TEST_F(FlySweep, TheTimeLeftCountsFlightsAtTheSameTime) {
+  write_program("sleep 0.2");
+  SweepOptions two_at_once = options(2);
+  std::optional<SweepProgress> first;
+  two_at_once.progress = [&](const SweepProgress& progress) {
+    if (!first && progress.flown == 1) first = progress;
+  };
+  ASSERT_TRUE(
+      fly_sweep(sweep(R"("axes": [{"path": "seed", "values": [1, 2, 3]}])"), two_at_once).ok());
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->passed, 1U);
+  EXPECT_DOUBLE_EQ(first->left_s, 2.0 * first->spent_s / 2.0);
 }
 
 TEST_F(FlySweep, TheTableShowsAxesWithUnits) {

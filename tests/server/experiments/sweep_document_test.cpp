@@ -143,6 +143,20 @@ TEST_F(SweepDocument, NamesWhatIsInvalid) {
               HasSubstr("at least one cell"));
 }
 
+/// Each cell has a copy of its values: a small file must not fill the memory.
+TEST_F(SweepDocument, TheValuesOfAllCellsAreLimited) {
+  const std::string text =
+      R"({"path": "description", "values": [")" + std::string(1'000'000, 'x') + R"("]})";
+  const std::string steps = R"("from": 1, "to": 100, "step": 1})";
+  const std::string grid = R"("axes": [)" + text + R"(, {"path": "seed", )" + steps +
+                           R"(, {"path": "duration_s", )" + steps + "]";
+  EXPECT_THAT(fault_of(grid), HasSubstr("axes: the values of 10000 cells have 19"));
+  EXPECT_THAT(fault_of(grid), HasSubstr(" MiB: must be at most 64 MiB"));
+  const std::string drawn = R"("axes": [)" + text + R"(], "latin_hypercube": {"cells": )";
+  EXPECT_THAT(fault_of(drawn + "100}"), HasSubstr("must be at most 64 MiB"));
+  EXPECT_EQ(fault_of(drawn + "10}"), "");
+}
+
 TEST_F(SweepDocument, AnInvalidCellIsNamed) {
   const auto sweep =
       loaded(R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [25, -4]}])");

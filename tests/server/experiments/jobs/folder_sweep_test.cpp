@@ -233,6 +233,37 @@ TEST_F(FolderSweep, ANewControllerTakesJobsOver) {
   EXPECT_EQ(busy.flown(), 2U);
 }
 
+/// It is stopped before it has read the folder: by Ctrl-C, or because nothing is due any more.
+TEST_F(FolderSweep, AControllerThatStopsAtOnceTakesBackWhatAnEarlierOneLeft) {
+  const JobFolder jobs(folder());
+  ASSERT_TRUE(jobs.create().ok());
+  const std::string left = "000001-0123abcd";
+  const std::string given_up = "000002-0123abcd";
+  ASSERT_TRUE(jobs.publish({left, "ab", kVersion, 1.0, {}}).ok());
+  for (const std::string& id : {left, given_up}) fs::create_directories(jobs.run(id));
+  FolderExecutorOptions executor_options;
+  executor_options.version = kVersion;
+  const auto executor = FolderExecutor::open(folder(), std::move(executor_options));
+  ASSERT_TRUE(executor.ok()) << executor.error().message;
+  EXPECT_TRUE(jobs.is_open(left));
+  EXPECT_TRUE(fs::exists(jobs.run(left)));
+  EXPECT_FALSE(fs::exists(jobs.run(given_up)));
+  (*executor)->stop();
+  EXPECT_THAT(*jobs.open_jobs(), IsEmpty());
+  EXPECT_TRUE(fs::is_empty(folder() / "jobs/flights"));
+}
+
+TEST_F(FolderSweep, CellsWithTheSameFlightAreOneJob) {
+  write_program("sleep 0.2");
+  const Sweep seeds =
+      sweep(R"("axes": [{"path": "seed", "values": [1, 2, 3]}], "repeats": {"most": 3})");
+  control(seeds);
+  JobWorker own = worker(3);
+  ASSERT_TRUE(step_until_over(own));
+  EXPECT_EQ(flights_of(finished(), folder()), 9);
+  EXPECT_EQ(flights(), 5U);
+}
+
 TEST_F(FolderSweep, CancellingEndsTheFlightsOfTheWorkers) {
   write_program("exec sleep 1000");
   const Sweep two = sweep(kTwoSpeeds);

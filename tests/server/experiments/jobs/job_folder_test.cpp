@@ -76,6 +76,39 @@ TEST_F(JobFolderTest, AWithdrawnJobLeavesNoFiles) {
   EXPECT_FALSE(fs::exists(jobs_.output(kJob)));
 }
 
+/// The process of a worker that has not noticed yet.
+TEST_F(JobFolderTest, AJobIsWithdrawnWhileItsFlightIsWritten) {
+  std::atomic<bool> over{false};
+  std::thread writer([&] {
+    const fs::path run = jobs_.run(kJob);
+    std::error_code ignored;
+    for (std::size_t i = 0; !over; ++i) {
+      fs::create_directories(run / std::to_string(i), ignored);
+    }
+  });
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(jobs_.publish(job(kJob)).ok());
+    const Status withdrawn = jobs_.withdraw(kJob);
+    EXPECT_TRUE(withdrawn.ok()) << withdrawn.error().message;
+  }
+  over = true;
+  writer.join();
+  EXPECT_FALSE(jobs_.is_open(kJob));
+}
+
+TEST_F(JobFolderTest, FlightsOfOtherJobsAreRemoved) {
+  const std::string other = "000002-0123abcd";
+  for (const std::string& id : {std::string(kJob), other}) {
+    fs::create_directories(jobs_.run(id) / "images");
+    write_text(jobs_.output(id), "text");
+  }
+  jobs_.remove_flights_except({kJob});
+  EXPECT_TRUE(fs::exists(jobs_.run(kJob)));
+  EXPECT_TRUE(fs::exists(jobs_.output(kJob)));
+  EXPECT_FALSE(fs::exists(jobs_.run(other)));
+  EXPECT_FALSE(fs::exists(jobs_.output(other)));
+}
+
 TEST_F(JobFolderTest, AReleasedJobIsTakenByAnotherWorker) {
   ASSERT_TRUE(jobs_.publish(job(kJob)).ok());
   ASSERT_TRUE(*jobs_.take(kJob, "w-1"));
