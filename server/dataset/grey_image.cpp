@@ -79,7 +79,7 @@ Result<Image> read_jpeg(const fs::path& file) {
 }
 
 Result<Image> read_deep(const fs::path& file, int sample_bits) {
-  const Result<Image16> deep = terrain::read_png16(file);
+  const Result<Image16> deep = terrain::read_png16(file, kMostImageSidePx);
   if (!deep) return deep.error();
   const unsigned largest = (1U << static_cast<unsigned>(sample_bits)) - 1U;
   const auto shift = static_cast<unsigned>(sample_bits - 8);
@@ -104,7 +104,7 @@ Result<Image> read_any(const fs::path& file, Kind kind, int sample_bits) {
       return read_deep(file, sample_bits);
     case Kind::kPng8:
     case Kind::kPnm:
-      return terrain::read_png(file);
+      return terrain::read_png(file, kMostImageSidePx);
     case Kind::kOther:
       break;
   }

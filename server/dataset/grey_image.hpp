@@ -11,8 +11,9 @@ namespace overfly::server {
 /// Reads PNG, JPEG, PGM or PPM; the first bytes decide the format. Colour is converted to grey as
 /// for colour cameras. Alpha is dropped. Of 16-bit samples the upper 8 of
 /// `sample_bits` are kept.
-/// Errors: kNotFound; kUnreadable naming the file: another format, damaged, or a sample that
-/// exceeds `sample_bits`.
+/// Errors: kNotFound; kUnreadable naming the file: another format, damaged, a side above
+/// kMostImageSidePx (refused before anything of that size is allocated), or a sample that exceeds
+/// `sample_bits`.
 [[nodiscard]] Result<Image> read_grey_image(const std::filesystem::path& file,
                                             int sample_bits = 16);
 

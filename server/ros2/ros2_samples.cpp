@@ -1,6 +1,7 @@
 #include "server/ros2/ros2_samples.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "middleware/ros1/frame_names.hpp"
@@ -77,12 +78,14 @@ void write_fix(CdrWriter& message, const GpsSample& sample) {
                              deg_from_rad(sample.place.lon_rad),
                              sample.place.alt_ellipsoid_m});
   std::array<double, 9> covariance{};
-  if (fix) {
+  const bool known =
+      fix && !std::isnan(sample.horizontal_accuracy_m) && !std::isnan(sample.vertical_accuracy_m);
+  if (known) {
     covariance[0] = covariance[4] = sample.horizontal_accuracy_m * sample.horizontal_accuracy_m;
     covariance[8] = sample.vertical_accuracy_m * sample.vertical_accuracy_m;
   }
   message.numbers(covariance);
-  message.number(fix ? kDiagonalKnown : std::uint8_t{0});
+  message.number(known ? kDiagonalKnown : std::uint8_t{0});
 }
 
 void write_velocity(CdrWriter& message, const GpsSample& sample) {

@@ -3,6 +3,8 @@
 #include <cpl_conv.h>
 #include <cpl_string.h>
 
+#include <string_view>
+
 #include "terrain/raster/gdal_dataset.hpp"
 
 namespace overfly::terrain {
@@ -79,14 +81,46 @@ Status write_png_of(const fs::path& file, const ImageBuffer<T>& image, GDALDataT
   return copy_to(source.get(), "PNG", file, options.List());
 }
 
+/// Checks the declared size before anything of that size is allocated.
+Status check_size(GDALDataset& source, const fs::path& file, std::uint32_t most_side_px) {
+  const auto width = static_cast<std::uint32_t>(source.GetRasterXSize());
+  const auto height = static_cast<std::uint32_t>(source.GetRasterYSize());
+  if (width <= most_side_px && height <= most_side_px) return {};
+  return Error{ErrorCode::kUnreadable,
+               file.string() + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                   " px: must be at most " + std::to_string(most_side_px) + " a side"};
+}
+
+/// PGM and PPM are not compressed: GDAL opens a file of a few bytes with any size in its header.
+Status check_pnm_length(GDALDataset& source, const fs::path& file, std::uint64_t sample_bytes) {
+  if (std::string_view(source.GetDriver()->GetDescription()) != "PNM") return {};
+  const std::uint64_t width = source.GetRasterXSize();
+  const std::uint64_t height = source.GetRasterYSize();
+  const std::uint64_t least = width * height * source.GetRasterCount() * sample_bytes;
+  std::error_code failed;
+  const std::uintmax_t length = fs::file_size(file, failed);
+  if (failed) return Error{ErrorCode::kIo, file.string() + ": " + failed.message()};
+  if (length >= least) return {};
+  return Error{ErrorCode::kUnreadable,
+               file.string() + ": " + std::to_string(length) + " bytes: must be at least " +
+                   std::to_string(least) + " for " + std::to_string(width) + " x " +
+                   std::to_string(height) + " px"};
+}
+
 /// Reads the whole file, samples of one pixel together.
 template <typename Sample>
-Result<ImageBuffer<Sample>> read_samples(GDALDataset& source, const fs::path& file) {
+Result<ImageBuffer<Sample>> read_samples(GDALDataset& source,
+                                         const fs::path& file,
+                                         std::uint32_t most_side_px) {
   const GDALDataType type = sizeof(Sample) == 2 ? GDT_UInt16 : GDT_Byte;
   if (source.GetRasterBand(1)->GetRasterDataType() != type) {
     return Error{
         ErrorCode::kUnreadable,
         file.string() + ": samples are not " + std::to_string(8 * sizeof(Sample)) + " bit"};
+  }
+  if (Status status = check_size(source, file, most_side_px); !status) return status.error();
+  if (Status status = check_pnm_length(source, file, sizeof(Sample)); !status) {
+    return status.error();
   }
   ImageBuffer<Sample> image(
       source.GetRasterXSize(), source.GetRasterYSize(), source.GetRasterCount() >= 3 ? 3 : 1);
@@ -122,16 +156,16 @@ Status write_png(const fs::path& file, const Image16& image) {
   return write_png_of(file, image, GDT_UInt16);
 }
 
-Result<Image16> read_png16(const fs::path& file) {
+Result<Image16> read_png16(const fs::path& file, std::uint32_t most_side_px) {
   auto dataset = open_raster(file);
   if (!dataset) return dataset.error();
-  return read_samples<std::uint16_t>(**dataset, file);
+  return read_samples<std::uint16_t>(**dataset, file, most_side_px);
 }
 
-Result<Image> read_png(const fs::path& file) {
+Result<Image> read_png(const fs::path& file, std::uint32_t most_side_px) {
   auto dataset = open_raster(file);
   if (!dataset) return dataset.error();
-  Result<Image> read = read_samples<std::uint8_t>(**dataset, file);
+  Result<Image> read = read_samples<std::uint8_t>(**dataset, file, most_side_px);
   if (!read) return read;
   const Image& image = *read;
   const GDALColorTable* palette = (*dataset)->GetRasterBand(1)->GetColorTable();

@@ -20,6 +20,8 @@ namespace {
 
 using testing::TemporaryFolder;
 
+constexpr std::uint32_t kMostSidePx = 64;
+
 TEST(Geoid, TableAgreesWithPublishedEgm96Heights) {
   // NGA's test points for EGM96 (tide-free, metres): the table's stated error is 8 m.
   struct Place {
@@ -138,7 +140,7 @@ TEST(ImageFile, PngReadsBackExactly) {
   for (const int channels : {1, 3}) {
     const Image image = testing::textured_image(37, 21, channels);
     ASSERT_TRUE(write_png(folder.path() / "a.png", image));
-    const auto read = read_png(folder.path() / "a.png");
+    const auto read = read_png(folder.path() / "a.png", kMostSidePx);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->channels, channels);
     EXPECT_EQ(read->data, image.data);
@@ -158,17 +160,43 @@ TEST(ImageFile, DeepPngReadsBackExactlyWithSixteenBitSamples) {
       image.data[i] = static_cast<std::uint16_t>(i * 2654435761U >> 7U);
     }
     ASSERT_TRUE(write_png(folder.path() / "a.png", image));
-    const auto read = read_png16(folder.path() / "a.png");
+    const auto read = read_png16(folder.path() / "a.png", kMostSidePx);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->channels, channels);
     EXPECT_EQ(read->data, image.data);
     // The header's bit depth: RFC 2083, section 4.1.1.
     EXPECT_EQ(testing::read_text(folder.path() / "a.png")[24], 16);
-    EXPECT_FALSE(read_png(folder.path() / "a.png")) << "would lose the low 8 bits";
+    EXPECT_FALSE(read_png(folder.path() / "a.png", kMostSidePx)) << "would lose the low 8 bits";
   }
   ASSERT_TRUE(write_png(folder.path() / "b.png", Image(2, 2, 1)));
-  EXPECT_FALSE(read_png16(folder.path() / "b.png"));
+  EXPECT_FALSE(read_png16(folder.path() / "b.png", kMostSidePx));
   EXPECT_FALSE(write_png(folder.path() / "c.png", Image16()));
+}
+
+TEST(ImageFile, RefusesASizeAboveTheLimit) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "a.png";
+  ASSERT_TRUE(write_png(file, Image(40, 20, 1)));
+  EXPECT_TRUE(read_png(file, 40));
+  const auto wide = read_png(file, 39);
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().message, file.string() + ": 40 x 20 px: must be at most 39 a side");
+  ASSERT_TRUE(write_png(file, Image16(20, 40, 3)));
+  EXPECT_FALSE(read_png16(file, 39)) << "too high";
+}
+
+TEST(ImageFile, RefusesAPgmThatIsShorterThanItsSamples) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "a.pgm";
+  const std::string header = "P5\n40 20\n65535\n";
+  const std::string samples(std::size_t{2} * 40 * 20, 'x');
+  testing::write_text(file, header + samples);
+  EXPECT_TRUE(read_png16(file, kMostSidePx));
+  testing::write_text(file, header + "ab");
+  const auto cut = read_png16(file, kMostSidePx);
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().message,
+            file.string() + ": 17 bytes: must be at least 1600 for 40 x 20 px");
 }
 
 TEST(ImageFile, ErrorsNameTheFile) {
@@ -179,7 +207,7 @@ TEST(ImageFile, ErrorsNameTheFile) {
   const Status lost = write_png(folder.path() / "no" / "a.png", Image(2, 2, 1));
   ASSERT_FALSE(lost);
   EXPECT_NE(lost.error().message.find("a.png"), std::string::npos);
-  EXPECT_FALSE(read_png(folder.path() / "none.png"));
+  EXPECT_FALSE(read_png(folder.path() / "none.png", kMostSidePx));
 }
 
 TEST(ImageFile, DepthKeepsMetresAndSky) {

@@ -65,9 +65,10 @@ void find_time(RecordPlan& plan) {
     const char* name;
     std::int64_t ns;
   };
-  // In the oldest GPS records TimeMS is the time of the GPS week, and T that of the clock.
-  const bool old_gps = plan.format.name == "GPS" && plan.format.field("T") != nullptr;
-  const TimeField names[] = {{old_gps ? "T" : "TimeMS", 1'000'000}, {"TimeUS", 1000}};
+  // In the oldest records of receivers (GPS, GPS2) TimeMS is the time of the GPS week, and T that
+  // of the clock.
+  const bool of_week = fields_named<2>(plan.format, {"Week", "T"}).has_value();
+  const TimeField names[] = {{of_week ? "T" : "TimeMS", 1'000'000}, {"TimeUS", 1000}};
   for (const TimeField& candidate : names) {
     const RecordField* const field = plan.format.field(candidate.name);
     if (field == nullptr) continue;

@@ -266,9 +266,11 @@ TEST(Dataflash, SkipsDamageAndGoesOn) {
   EXPECT_THAT(log->warnings, Contains(HasSubstr("127 bytes in 2 places")));
 }
 
-TEST(Dataflash, ReadsOldLogsInMilliseconds) {
+/// A log of an old version: the receiver's TimeMS is that of the GPS week, and T that of the clock.
+Bytes old_log(const std::string& receiver) {
   Bytes bytes = format_record(0x80, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
-  append(bytes, format_record(10, 30, "GPS", "BIHLLeII", "Status,TimeMS,Week,Lat,Lng,Alt,Spd,T"));
+  append(bytes,
+         format_record(10, 30, receiver, "BIHLLeII", "Status,TimeMS,Week,Lat,Lng,Alt,Spd,T"));
   append(bytes, format_record(11, 13, "EKF1", "Iccc", "TimeMS,Roll,Pitch,Yaw"));
   for (std::uint32_t i = 0; i < 20; ++i) {
     Bytes gps = record_header(10);
@@ -284,15 +286,21 @@ TEST(Dataflash, ReadsOldLogsInMilliseconds) {
     for (const std::int16_t value : {0, 0, 9000}) put(ekf, value);
     append(bytes, ekf);
   }
+  return bytes;
+}
+
+TEST(Dataflash, ReadsOldLogsInMilliseconds) {
   const overfly::testing::TemporaryFolder folder;
-  const auto log = open_bytes(folder, bytes);
-  ASSERT_TRUE(log.ok()) << log.error().message;
-  ASSERT_TRUE(log->truth);
-  const StreamInfo& gps = log->streams[log->truth->position];
-  EXPECT_EQ(gps.description.name, "GPS");
-  EXPECT_EQ(gps.first_ns, 250 * kNsPerS);
-  EXPECT_EQ(gps.invalid, 3U);
-  EXPECT_DOUBLE_EQ(gps.highest_m, 590.14);
+  for (const std::string receiver : {"GPS", "GPS2"}) {
+    const auto log = open_bytes(folder, old_log(receiver));
+    ASSERT_TRUE(log.ok()) << log.error().message;
+    ASSERT_TRUE(log->truth) << receiver;
+    const StreamInfo& gps = log->streams[log->truth->position];
+    EXPECT_EQ(gps.description.name, receiver);
+    EXPECT_EQ(gps.first_ns, 250 * kNsPerS);
+    EXPECT_EQ(gps.invalid, 3U);
+    EXPECT_DOUBLE_EQ(gps.highest_m, 590.14);
+  }
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ class RenderCommand : public CommandLine {
   }
 
   static Image png(const std::string& file) {
-    auto image = terrain::read_png(file);
+    auto image = terrain::read_png(file, 4096);
     if (!image) throw std::runtime_error(image.error().message);
     return std::move(*image);
   }

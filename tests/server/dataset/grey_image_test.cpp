@@ -127,6 +127,18 @@ TEST_F(GreyImage, RefusesPicturesThatAreCutShort) {
   }
 }
 
+TEST_F(GreyImage, RefusesDeclaredSizesThatTheFileDoesNotHold) {
+  write_text(file("huge.pgm"), "P5\n100000 100000\n255\n");
+  EXPECT_THAT(error("huge.pgm"),
+              HasSubstr("huge.pgm: 100000 x 100000 px: must be at most 16384 a side"));
+  const std::string head = " 16384 16384 255\nab";
+  write_text(file("tiny.pgm"), "P5" + head);
+  EXPECT_THAT(error("tiny.pgm"),
+              HasSubstr("tiny.pgm: 21 bytes: must be at least 268435456 for 16384 x 16384 px"));
+  write_text(file("tiny.ppm"), "P6" + head);
+  EXPECT_THAT(error("tiny.ppm"), HasSubstr("must be at least 805306368 for 16384 x 16384 px"));
+}
+
 TEST(ImageName, IsToldByItsEnding) {
   for (const char* name : {"a.png", "a.JPG", "b/a.jpeg", "a.pgm", "a.ppm"}) {
     EXPECT_TRUE(is_image_name(name)) << name;

@@ -80,7 +80,7 @@ TEST(Export, ImagesOfARunAreThoseThatItRecorded) {
   for (const auto& entry : fs::directory_iterator(run / "frames")) {
     const fs::path png =
         folder.path() / "d" / "images" / "camera0" / entry.path().stem().replace_extension("png");
-    const Result<Image> image = terrain::read_png(png);
+    const Result<Image> image = terrain::read_png(png, kMostImageSidePx);
     ASSERT_TRUE(image.ok()) << image.error().message;
     // JPEG of equal images is equal byte by byte: the recorder writes quality 95.
     const auto jpeg = encode_jpeg(*image, 95);
