@@ -217,6 +217,29 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     await page.locator('.run').nth(1).waitFor();
   });
 
+  step('leaves the form of another run open when notes are saved late', async () => {
+    // The answer comes when the test lets it.
+    let release;
+    const held = new Promise((resolve) => (release = resolve));
+    await page.route('**/notes', async (route) => {
+      await held;
+      await route.continue();
+    });
+    const edit = (id) => page.locator(`.run[data-run="${id}"] [data-role=edit-notes]`).click();
+    const note = page.locator('.notes-form [data-role=note]');
+    await edit(kSlow);
+    await page.locator('.notes-form [data-role=tags]').fill('wind, for the paper, late');
+    await page.locator('.notes-form [type=submit]').click();
+    await edit(kFast);
+    await note.fill('Typed meanwhile');
+    release();
+    await page.locator(`.run[data-run="${kSlow}"] .tag`, { hasText: 'late' }).waitFor();
+    assert.equal(await note.inputValue(), 'Typed meanwhile');
+    await page.unroute('**/notes');
+    await page.locator('.notes-form button', { hasText: 'Cancel' }).click();
+    await page.locator('.run-notes').waitFor({ state: 'hidden' });
+  });
+
   step('shows how the errors are distributed over the flights', async () => {
     await page.keyboard.press('Control+k');
     await page.locator('#palette-input').fill('repeated flights');

@@ -166,10 +166,20 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
     await dashboard.screenshot('missions_1600x900');
   });
 
-  step('saves the mission as a scenario', async () => {
+  step('saves the mission as a scenario, and leaves the map as it is', async () => {
+    const scale = page.locator('.leaflet-control-scale-line');
+    const whole = await scale.innerText();
+    await page.locator('.leaflet-control-zoom-in').click();
+    await dashboard.until(
+      (before) => document.querySelector('.leaflet-control-scale-line').textContent !== before,
+      whole,
+    );
+    const nearer = await scale.innerText();
     await field('mission-title').fill('Round the farm');
-    await page.locator('[data-role=mission-save]').click();
+    await page.locator('[data-role=mission-save]').press('Enter');
     await page.locator('[data-role=mission-save]', { hasText: 'Saved' }).waitFor();
+    await drawn();
+    assert.equal(await scale.innerText(), nearer);
     assert.ok(existsSync(path.join(folder, 'saved/round_the_farm.json')));
     await page.locator('#mission-open option[value=round_the_farm]').waitFor({ state: 'attached' });
   });

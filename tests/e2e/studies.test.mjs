@@ -166,6 +166,11 @@ describe('studies', { skip, timeout: 900_000 }, () => {
     await role('axis-1-path').fill('camera.sensor.read_noise_e');
     await role('axis-1-path').press('Tab');
     await dashboard.until(() => document.querySelector('[data-role=axis-1-to]').value === '60');
+    // The form was made again: the field after it still has the focus, and what is typed replaces its text.
+    const from = await role('axis-1-from').inputValue();
+    await page.keyboard.type('150');
+    assert.equal(await role('axis-1-from').inputValue(), '150');
+    await role('axis-1-from').fill(from);
     await role('study-flights').fill('3');
     await role('study-all').check();
     await dashboard.screenshot('hunt_form_1280x800');

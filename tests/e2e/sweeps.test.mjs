@@ -257,7 +257,13 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await page.locator('[data-role=continue-sweep]').click();
     await state('complete');
     assert.equal(await cells().count(), 6);
-    await page.locator('.notice', { hasText: 'the sweep is complete' }).first().waitFor();
+    const notice = page.locator('.notice', { hasText: 'the sweep is complete' }).first();
+    await notice.waitFor();
+    const isOnTop = await notice.evaluate((element) => {
+      const { left, top, width, height } = element.getBoundingClientRect();
+      return element.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+    });
+    assert.ok(isOnTop, 'the notice is seen over the page');
     await dashboard.screenshot('sweep_complete_1280x800');
     await page.emulateMedia({ colorScheme: 'dark' });
     await dashboard.screenshot('sweep_complete_dark_1280x800');

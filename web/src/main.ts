@@ -114,7 +114,14 @@ const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), late
 const logs = new LogBrowser(store, rest, session, uploadByBrowser, newKey);
 const connect = new VehicleConnect(store, rest, session, newKey);
 const scores = new ScoreDesk(store, rest, uploadByBrowser);
-const calibration = new CalibrationDesk(store, new CalibrationClient(rest), rest, notices, later);
+const calibration = new CalibrationDesk(
+  store,
+  new CalibrationClient(rest),
+  rest,
+  scenarios,
+  notices,
+  later,
+);
 const worlds = new LogWorlds(store, rest);
 const storage = browserStorage();
 const missions = new MissionDesk(store, rest, session, storage, later, newKey, () =>

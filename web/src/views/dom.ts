@@ -1,4 +1,5 @@
 // Helpers that create and update DOM elements.
+import { focusAgain, focusIn } from './focus';
 
 type Props = Record<string, string | number | boolean | undefined | ((event: never) => void)>;
 type Child = Node | string | null;
@@ -45,11 +46,13 @@ export function setAttribute(element: HTMLElement, name: string, value: string |
   else element.setAttribute(name, value);
 }
 
-/** Replaces the children if `key` differs from the one they were made for. */
+/** Replaces the children if `key` differs from the one they were made for; a control keeps the focus. */
 export function rebuild(element: HTMLElement, key: string, make: () => Node[]): void {
   if (element.dataset['key'] === key) return;
   element.dataset['key'] = key;
+  const focused = focusIn(element);
   element.replaceChildren(...make());
+  if (focused !== null) focusAgain(element, focused);
 }
 
 /** A text that is shown as a whole or, in a box that is too narrow, not at all (base.css). */

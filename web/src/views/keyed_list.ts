@@ -1,12 +1,14 @@
 // A list whose entries are kept as long as they show the same: a change of one of a thousand makes
-// one element. A button keeps the focus if its entry is made again or moved.
+// one element. A control keeps the focus if its entry is made again or moved.
+import type { Focused } from './focus';
+import { focusAgain, focusIn } from './focus';
 
 export interface KeyedEntry {
   id: string;
   /** Differs if the entry must be made again. */
   key: string;
   make: () => HTMLElement;
-  /** Sets, in a new or kept element, what changes without another key: its buttons keep the focus. */
+  /** Sets, in a new or kept element, what changes without another key: its controls keep the focus. */
   refresh?: (element: HTMLElement) => void;
 }
 
@@ -18,17 +20,16 @@ export class KeyedList {
   show(entries: readonly KeyedEntry[]): void {
     const focused = this.focused();
     this.place(entries);
-    if (focused === null || this.root.contains(document.activeElement)) return;
-    const again = this.made.get(focused.id)?.element.querySelectorAll<HTMLElement>('button') ?? [];
-    [...again].find((one) => nameOf(one) === focused.name)?.focus({ preventScroll: true });
+    const entry = focused === null ? undefined : this.made.get(focused.id);
+    if (focused !== null && entry !== undefined) focusAgain(entry.element, focused.control);
   }
 
-  /** The entry and the name of the button that has the focus. */
-  private focused(): { id: string; name: string } | null {
-    const active = document.activeElement;
-    if (!(active instanceof HTMLButtonElement)) return null;
+  /** The entry and its control that has the focus. */
+  private focused(): { id: string; control: Focused } | null {
+    if (!this.root.contains(document.activeElement)) return null;
     for (const [id, { element }] of this.made) {
-      if (element.contains(active)) return { id, name: nameOf(active) };
+      const control = focusIn(element);
+      if (control !== null) return { id, control };
     }
     return null;
   }
@@ -58,9 +59,4 @@ export class KeyedList {
       else this.root.insertBefore(element, place);
     }
   }
-}
-
-/** What a button is for, whatever it says: another one must not get the focus. */
-function nameOf(button: HTMLElement): string {
-  return button.dataset.role ?? button.getAttribute('aria-label') ?? button.innerText;
 }

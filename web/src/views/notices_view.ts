@@ -17,6 +17,7 @@ export class NoticesView implements View {
           'button',
           {
             class: 'notice',
+            'data-of': id,
             'data-level': level,
             title: 'Dismiss',
             onclick: () => this.context.notices.dismiss(id),

@@ -180,7 +180,10 @@ function leaveAfterMouse(): void {
   document.addEventListener('change', leave);
   document.addEventListener('click', ({ target }) => {
     const button = target instanceof Element ? target.closest('button') : null;
-    if (mouse) button?.blur();
+    if (!mouse || button === null) return;
+    // One that was made again by its click has a successor with the focus.
+    const used = button.isConnected ? button : document.activeElement;
+    if (used instanceof HTMLButtonElement) used.blur();
   });
 }
 

@@ -4,36 +4,44 @@ import { errorText, RestError } from '../../connection/rest_error';
 import type { CalibrationSession } from '../../protocol/calibration_types';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
+import { draftOf } from '../scenario/draft';
 import type { Store } from '../state';
 import type { CalibrationForm } from './calibration_form';
 import { lensOf, requestOf } from './calibration_form';
 import type { CalibrationPage } from './calibration_page';
 import { calibratedSection } from './calibration_results';
+import type { Later } from './image_sender';
+import { ImageSender } from './image_sender';
 
 /** While a camera is shown, and otherwise. */
 const kLivePeriod_ms = 150;
 const kQuietPeriod_ms = 600;
-/** Before an image is offered again that the server had no room for. */
-const kUploadPause_ms = 200;
-
-export type Later = (callback: () => void, delay_ms: number) => number;
 
 export interface ScenarioReader {
   scenario(name: string): Promise<JsonObject>;
+}
+
+/** Takes a section of the launcher's scenario as JSON, and has it checked. */
+export interface SectionTaker {
+  setText(section: string, text: string): void;
 }
 
 export class CalibrationDesk {
   /** Increases when a session is begun or left: answers about the one before are dropped. */
   private generation = 0;
   private polling = false;
+  private readonly sender: ImageSender;
 
   constructor(
     private readonly store: Store,
     private readonly client: CalibrationClient,
     private readonly scenarios: ScenarioReader,
+    private readonly sections: SectionTaker,
     private readonly notices: Notices,
     private readonly later: Later,
-  ) {}
+  ) {
+    this.sender = new ImageSender(store, client, later);
+  }
 
   async open(): Promise<void> {
     const { page } = this;
@@ -134,26 +142,9 @@ export class CalibrationDesk {
     await this.readDetail();
   }
 
-  async send(files: readonly File[]): Promise<void> {
-    const { page } = this;
-    const { generation } = this;
-    if (page.session === null || !page.session.uploads) return;
-    const { id } = page.session;
-    page.sending = { done: 0, total: files.length };
-    this.changed();
-    for (const file of files) {
-      try {
-        await this.sendOne(id, file, generation);
-      } catch (error) {
-        if (this.generation === generation) page.error = `${file.name}: ${errorText(error)}`;
-        break;
-      }
-      if (this.generation !== generation) return;
-      page.sending.done += 1;
-      this.changed();
-    }
-    page.sending = null;
-    this.changed();
+  /** Sends images, after those that are being sent. */
+  send(files: readonly File[]): Promise<void> {
+    return this.sender.send(files);
   }
 
   async save(name: string): Promise<void> {
@@ -175,17 +166,22 @@ export class CalibrationDesk {
     });
   }
 
-  /** The chosen scenario of the launcher uses a saved calibration in its next flight. */
+  /** The scenario of the launcher, with its changes, uses a saved calibration in its next flight. */
   useInScenario(file: string, name: string): void {
-    const { state } = this.store;
-    if (state.scenarioDocument === null) {
+    const { scenarioDocument, scenarioEdits, scenarioName } = this.store.state;
+    if (scenarioDocument === null) {
       this.notices.error('Choose a scenario in the launcher first.');
       return;
     }
-    const { section, value } = calibratedSection(state.scenarioDocument, file);
-    state.scenarioEdits.set(section, JSON.stringify(value, null, 2));
-    this.store.change('launch');
-    this.notices.info(`The next flight of ${state.scenarioName ?? 'the scenario'} uses ${name}.`);
+    const { document, errors } = draftOf(scenarioDocument, scenarioEdits);
+    const faulty = errors.find(({ field }) => field === 'camera' || field === 'cameras');
+    if (faulty !== undefined) {
+      this.notices.error(`Correct the scenario first: ${faulty.field} ${faulty.message}`);
+      return;
+    }
+    const { section, value } = calibratedSection(document, file);
+    this.sections.setText(section, JSON.stringify(value, null, 2));
+    this.notices.info(`The next flight of ${scenarioName ?? 'the scenario'} uses ${name}.`);
   }
 
   fileUrl(name: string, format: string): string {
@@ -233,19 +229,6 @@ export class CalibrationDesk {
     await this.request(async () => {
       this.show(await this.client.solve(session.id, lensOf(form), left));
     });
-  }
-
-  private async sendOne(id: string, file: File, generation: number): Promise<void> {
-    for (;;) {
-      try {
-        await this.client.uploadImage(id, file.name, file);
-        return;
-      } catch (error) {
-        const full = error instanceof RestError && error.code === 'too_many_images';
-        if (!full || this.generation !== generation) throw error;
-        await new Promise<void>((resolve) => this.later(resolve, kUploadPause_ms));
-      }
-    }
   }
 
   private poll(): void {

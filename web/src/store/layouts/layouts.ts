@@ -65,6 +65,8 @@ export class Layouts {
   private own = new Map<string, LayoutNode>();
   /** Of own layouts. */
   private looks = new Map<string, LayoutLook>();
+  /** The browser refused to keep the last change. */
+  private unkept = false;
   private arranger: Arranger | null = null;
   private kept: () => void = () => undefined;
 
@@ -112,6 +114,7 @@ export class Layouts {
 
   /** Shows the layout of an address, which may be an own one of this browser. */
   open({ name, tree }: SharedLayout): void {
+    this.readAgain();
     const { shared } = this;
     if (tree === null) {
       if (name !== null && (name !== shared.name || shared.tree !== null)) this.choose(name);
@@ -139,7 +142,12 @@ export class Layouts {
 
   /** Shows a layout from its beginning; does nothing if there is none of this name. */
   choose(name: string): void {
-    if (readyLayout(name) === undefined && !this.own.has(name)) return;
+    this.readAgain();
+    if (readyLayout(name) !== undefined || this.own.has(name)) this.begin(name);
+    else this.store.change('layout');
+  }
+
+  private begin(name: string): void {
     this.name = name;
     this.changed = null;
     this.keep();
@@ -160,6 +168,7 @@ export class Layouts {
 
   /** Keeps the arrangement of the screen as it is now. */
   onRearranged(tree: LayoutNode | null): void {
+    this.readAgain();
     this.changed = tree;
     this.keep();
   }
@@ -171,6 +180,7 @@ export class Layouts {
     if (tree === undefined) return 'There is nothing to keep yet.';
     const problem = nameProblem(name);
     if (problem !== null) return problem;
+    this.readAgain();
     if (!this.own.has(name) && this.own.size >= kMostOwn) {
       return `There are ${kMostOwn} layouts already: delete one first.`;
     }
@@ -196,6 +206,7 @@ export class Layouts {
    * @return their names; null if there would be more than kMostOwn
    */
   add(layouts: readonly OwnLayout[]): string[] | null {
+    this.readAgain();
     const own = new Map(this.own);
     const looks = new Map(this.looks);
     const names = layouts.map(({ name, tree, look }) => {
@@ -223,9 +234,10 @@ export class Layouts {
   }
 
   remove(name: string): void {
-    if (!this.own.delete(name)) return;
+    this.readAgain();
+    this.own.delete(name);
     this.looks.delete(name);
-    if (this.name === name) this.choose(kDefaultLayout);
+    if (this.name === name && readyLayout(name) === undefined) this.begin(kDefaultLayout);
     else this.keep();
   }
 
@@ -255,42 +267,51 @@ export class Layouts {
     };
     try {
       this.storage.setItem(kKey, JSON.stringify(kept));
+      this.unkept = false;
     } catch {
       // Without storage, or with a full one, the layout lasts until the page is closed.
+      this.unkept = true;
     }
     this.store.change('layout');
     this.kept();
   }
 
   private read(): void {
-    let text: string | null = null;
-    try {
-      text = this.storage.getItem(kKey);
-    } catch {
-      return;
-    }
+    const text = this.stored();
     if (text === null) return;
-    const lost = this.take(parsed(text));
+    const lost = this.take(readKept(text));
     if (lost.length === 0) return;
     this.notices.error(`Stored layouts are damaged and were left out: ${lost.join(', ')}.`);
   }
 
+  /** Other pages of this browser change own layouts too. What this page shows stays as it is. */
+  private readAgain(): void {
+    const text = this.unkept ? null : this.stored();
+    const kept = text === null ? null : readKept(text);
+    if (kept === null) return;
+    const shown = this.own.get(this.name);
+    this.own = kept.own;
+    this.looks = kept.looks;
+    const now = this.own.get(this.name);
+    if (shown === undefined || (now !== undefined && sameLayout(now, shown))) return;
+    this.changed ??= shown;
+    if (now === undefined) this.name = kDefaultLayout;
+  }
+
+  private stored(): string | null {
+    try {
+      return this.storage.getItem(kKey);
+    } catch {
+      return null;
+    }
+  }
+
   /** Takes what is in order. @return what is not */
-  private take(kept: unknown): string[] {
-    if (typeof kept !== 'object' || kept === null) return ['all'];
-    const { version, name, changed, own, looks } = kept as Record<string, unknown>;
-    if (version !== kVersion || typeof name !== 'string') return ['all'];
-    const lost: string[] = [];
-    const entries = typeof own === 'object' && own !== null ? Object.entries(own) : [];
-    for (const [title, value] of entries.slice(0, kMostOwn)) {
-      const tree = title.length > kLongestName ? null : readLayout(value);
-      if (tree === null) lost.push(title.slice(0, kLongestName));
-      else this.own.set(title, tree);
-    }
-    for (const title of this.own.keys()) {
-      const look = readLook(looks, title);
-      if (look !== null) this.looks.set(title, look);
-    }
+  private take(kept: Kept | null): string[] {
+    if (kept === null) return ['all'];
+    const { name, changed, lost } = kept;
+    this.own = kept.own;
+    this.looks = kept.looks;
     if (readyLayout(name) === undefined && !this.own.has(name)) {
       return lost.length > 0 ? lost : [name.slice(0, kLongestName)];
     }
@@ -300,6 +321,37 @@ export class Layouts {
     if (this.changed === null) lost.push(this.title);
     return lost;
   }
+}
+
+/** What the browser keeps; the arrangement of the screen is not checked yet. */
+interface Kept {
+  name: string;
+  changed: unknown;
+  own: Map<string, LayoutNode>;
+  looks: Map<string, LayoutLook>;
+  /** Names of own layouts that are not in order. */
+  lost: string[];
+}
+
+/** null if nothing can be read. */
+function readKept(text: string): Kept | null {
+  const kept = parsed(text);
+  if (typeof kept !== 'object' || kept === null) return null;
+  const { version, name, changed, own, looks } = kept as Record<string, unknown>;
+  if (version !== kVersion || typeof name !== 'string') return null;
+  const read: Kept = { name, changed, own: new Map(), looks: new Map(), lost: [] };
+  const entries = typeof own === 'object' && own !== null ? Object.entries(own) : [];
+  for (const [title, value] of entries.slice(0, kMostOwn)) {
+    const tree = title.length > kLongestName ? null : readLayout(value);
+    if (tree === null) {
+      read.lost.push(title.slice(0, kLongestName));
+      continue;
+    }
+    read.own.set(title, tree);
+    const look = readLook(looks, title);
+    if (look !== null) read.looks.set(title, look);
+  }
+  return read;
 }
 
 function sameLayout(a: LayoutNode, b: LayoutNode): boolean {

@@ -29,6 +29,8 @@ const kUsualBase = 'course';
 const kUsualWorld = 'builtin:1';
 
 export class MissionDesk extends MissionEditor {
+  /** Counts the choices of a scenario: late answers about the one before are dropped. */
+  private choices = 0;
   private readonly worlds: MissionWorlds;
   private readonly reporter: MissionReporter;
 
@@ -57,13 +59,14 @@ export class MissionDesk extends MissionEditor {
     this.page.open = true;
     this.changed();
     await this.worlds.read();
-    if (this.page.draft !== null) {
+    // A mission may have been chosen meanwhile.
+    if (this.page.draft !== null || this.page.working) {
       this.reporter.schedule();
       return;
     }
     const draft = readDraft(this.storage, this.newId);
     if (draft === null) await this.startNew();
-    else await this.show(draft, null);
+    else await this.show(draft);
     this.reporter.schedule();
   }
 
@@ -134,15 +137,16 @@ export class MissionDesk extends MissionEditor {
         flight: { ...kUsualFlight },
         mission: emptyMission({ lat_deg: 0, lon_deg: 0, alt_msl_m: 0 }),
       };
-      await this.show(draft, null);
-      this.settle();
+      if (await this.show(draft)) this.settle();
     });
   }
 
   /** Opens the mission of a scenario. */
   async openScenario(name: string): Promise<void> {
-    await this.begin(name, async (document, world) => {
-      const mission = missionFromPlan(await this.rest.scenarioPlan(name), this.newId);
+    await this.begin(name, async (document, world, isCurrent) => {
+      const plan = await this.rest.scenarioPlan(name);
+      if (!isCurrent()) return;
+      const mission = missionFromPlan(plan, this.newId);
       const own = this.store.state.scenarios?.find((entry) => entry.name === name)?.saved === true;
       const title = typeof document['title'] === 'string' ? document['title'] : name;
       const draft: MissionDraft = {
@@ -154,14 +158,32 @@ export class MissionDesk extends MissionEditor {
         flight: flightOf(document),
         mission,
       };
-      await this.show(draft, null);
-      const { world: opened } = this.page;
-      if (opened !== null && this.page.draft !== null) {
-        this.page.draft = { ...draft, mission: asFlown(mission, document, opened) };
-      }
+      if (!(await this.show(draft))) return;
+      const read = this.placeAsFlown(draft, document);
       this.page.notes = notFlown(mission);
-      this.page.savedText = own ? this.draftText() : null;
+      this.page.savedText = own ? JSON.stringify(this.documentOf(read)) : null;
     });
+  }
+
+  /**
+   * Puts the present mission, which may have been edited meanwhile, where its scenario flies it.
+   * @return the draft as it was read, at the same place
+   */
+  private placeAsFlown(read: MissionDraft, document: JsonObject): MissionDraft {
+    const { draft, world } = this.page;
+    if (draft === null || world?.name !== read.world) return read;
+    const placed = (one: MissionDraft) => ({
+      ...one,
+      mission: asFlown(one.mission, document, world),
+    });
+    const present = placed(draft);
+    if (present.mission !== draft.mission) {
+      // Earlier states are at the other place.
+      this.history.clear();
+      this.noteUndo();
+    }
+    this.page.draft = present;
+    return placed(read);
   }
 
   /** Takes cameras, estimators and the rest from another scenario. */
@@ -174,34 +196,43 @@ export class MissionDesk extends MissionEditor {
     });
   }
 
+  /** @param work  asks after each wait whether its scenario is still the chosen one */
   private async begin(
     name: string,
-    work: (document: JsonObject, world: string) => Promise<void>,
+    work: (document: JsonObject, world: string, isCurrent: () => boolean) => Promise<void>,
   ): Promise<void> {
     const { page } = this;
+    this.choices += 1;
+    const { choices } = this;
+    const isCurrent = () => this.choices === choices;
     page.working = true;
     this.changed();
     try {
       const document = await this.rest.scenario(name);
+      if (!isCurrent()) return;
       const world = page.worlds?.find(({ scenarios }) => scenarios.includes(name));
-      await work(document, world?.name ?? kUsualWorld);
+      await work(document, world?.name ?? kUsualWorld, isCurrent);
     } catch (error) {
-      page.notes = [`${name}: ${errorText(error)}`];
+      if (isCurrent()) page.notes = [`${name}: ${errorText(error)}`];
     }
-    page.working = false;
+    if (isCurrent()) page.working = false;
     this.reporter.schedule();
   }
 
-  private async show(draft: MissionDraft, savedText: string | null): Promise<void> {
+  /** @return whether it is still shown when its world is open */
+  private async show(draft: MissionDraft): Promise<boolean> {
     const { page } = this;
+    page.opened += 1;
+    const { opened } = page;
     page.draft = draft;
     page.selected = null;
     page.notes = [];
     page.camera = '';
-    page.savedText = savedText;
+    page.savedText = null;
     this.history.clear();
     this.noteUndo();
     if (page.world?.name !== draft.world) await this.worlds.open(draft.world);
+    return page.opened === opened;
   }
 
   // ---- what the mission will be like -----------------------------------------------------------
@@ -220,8 +251,11 @@ export class MissionDesk extends MissionEditor {
 
   /** The scenario that the draft is; null while there is none. */
   document(): JsonObject | null {
-    const { draft, worlds } = this.page;
-    const world = worlds?.find(({ name }) => name === draft?.world);
+    return this.documentOf(this.page.draft);
+  }
+
+  private documentOf(draft: MissionDraft | null): JsonObject | null {
+    const world = this.page.worlds?.find(({ name }) => name === draft?.world);
     if (draft === null || world === undefined) return null;
     const document = missionDocument(
       draft.baseDocument,
@@ -246,19 +280,23 @@ export class MissionDesk extends MissionEditor {
   /** Saves the draft as a scenario. @param copy  under a new name */
   async save(copy = false): Promise<void> {
     const { page } = this;
-    const { draft } = page;
-    const document = this.document();
-    if (draft === null || document === null || page.working) return;
+    const { draft, opened } = page;
+    if (draft === null || page.working) return;
     const replace = draft.name !== null && !copy;
     const name = replace
       ? (draft.name ?? '')
       : freeName(fileNameOf(draft.title), this.store.state.scenarios);
-    const title = draft.title.trim() === '' ? 'Mission' : draft.title;
+    const titled = (title: string) => (title.trim() === '' ? 'Mission' : title);
+    const sent = this.documentOf({ ...draft, name, title: titled(draft.title) });
+    if (sent === null) return;
     await this.work(async () => {
-      await this.rest.saveScenario(name, { ...document, name, title }, replace);
-      page.draft = { ...draft, name, title };
-      page.savedText = this.draftText();
-      page.notes = [`Saved as ${name}.`];
+      await this.rest.saveScenario(name, sent, replace);
+      // What was edited meanwhile stays; another mission may have been opened.
+      if (page.draft !== null && page.opened === opened) {
+        page.draft = { ...page.draft, name, title: titled(page.draft.title) };
+        page.savedText = JSON.stringify(sent);
+        page.notes = [`Saved as ${name}.`];
+      }
       await this.onScenarios();
       await this.worlds.read();
     });

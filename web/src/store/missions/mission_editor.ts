@@ -66,9 +66,12 @@ export abstract class MissionEditor {
     this.restore(this.page.draft === null ? null : this.history.redo(this.page.draft));
   }
 
+  /** What is not drawn stays: the saved scenario, the one that gives the rest, and the world. */
   private restore(draft: MissionDraft | null): void {
-    if (draft === null) return;
-    this.page.draft = draft;
+    const present = this.page.draft;
+    if (draft === null || present === null) return;
+    const { name, base, baseDocument, world } = present;
+    this.page.draft = { ...draft, name, base, baseDocument, world };
     this.noteUndo();
     this.onEdit();
   }

@@ -31,6 +31,8 @@ export interface MissionPage {
   /** Share of a world that is being made; null = none is. */
   making: number | null;
   draft: MissionDraft | null;
+  /** Counts the missions that were opened: another number is another mission. */
+  opened: number;
   selected: number | null;
   report: MissionReport | null;
   /** The report is that of an earlier draft. */
@@ -70,6 +72,7 @@ export function initialMissionPage(): MissionPage {
     worldMissing: false,
     making: null,
     draft: null,
+    opened: 0,
     selected: null,
     report: null,
     outdated: false,

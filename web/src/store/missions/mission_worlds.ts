@@ -35,12 +35,18 @@ export class MissionWorlds {
     this.changed();
     try {
       const world = await this.rest.world(name);
-      if (page.draft === null || page.draft.world === name) page.world = world;
+      if (this.isWanted(name)) page.world = world;
     } catch (error) {
+      if (!this.isWanted(name)) return;
       page.worldMissing = error instanceof RestError && error.status === 409;
       page.worldError = page.worldMissing ? null : errorText(error);
     }
     this.changed();
+  }
+
+  private isWanted(name: string): boolean {
+    const { draft } = this.page;
+    return draft === null || draft.world === name;
   }
 
   /** Makes a built-in world, with progress, and opens it if it is still wanted. */

@@ -98,7 +98,8 @@ export class SweepResults {
   }
 
   async compare(name: string): Promise<void> {
-    const { baseline, estimator, conditions, comparing } = this.state;
+    const asked = this.state;
+    const { baseline, estimator, conditions, comparing } = asked;
     if (baseline === '' || comparing) return;
     this.set({ comparing: true });
     const lines = conditions.split('\n').map((line) => line.trim());
@@ -109,7 +110,11 @@ export class SweepResults {
     } catch (error) {
       comparison = errorText(error);
     }
-    if (this.store.state.sweepPage.name === name) this.set({ comparing: false, comparison });
+    asked.comparing = false;
+    const { state } = this;
+    const shown = this.store.state.sweepPage.name === name;
+    const same = state.baseline === baseline && state.estimator === estimator;
+    this.set(shown && same ? { comparison } : {});
   }
 
   private get state(): SweepResultsState {

@@ -59,7 +59,12 @@ export class ItemList {
       },
       h(
         'button',
-        { class: 'mission-item', title: row.hint, onclick: () => this.desk.select(row.id) },
+        {
+          class: 'mission-item',
+          'data-role': 'select-item',
+          title: row.hint,
+          onclick: () => this.desk.select(row.id),
+        },
         h('b', { class: row.warned ? 'warned' : '' }, String(row.number)),
         h('span', { class: 'mission-item-title' }, row.title),
         h('span', { class: 'mission-item-figure' }, row.height),
@@ -71,6 +76,7 @@ export class ItemList {
           class: 'icon-button',
           title: 'Delete this item (Del)',
           'aria-label': `Delete item ${row.number}`,
+          'data-role': 'delete-item',
           onclick: () => this.desk.remove(row.id),
         },
         icon('bin'),

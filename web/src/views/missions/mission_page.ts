@@ -36,6 +36,7 @@ export class MissionPageView implements View {
   private readonly readout: GroundReadout;
   private readonly checks = h('ul', { class: 'mission-checks', 'data-role': 'mission-checks' });
   private readonly message = h('div', { class: 'mission-message', role: 'status', hidden: true });
+  /** The mission and the world that were shown as a whole. */
   private fitted: string | null = null;
 
   constructor(private readonly context: Context) {
@@ -104,9 +105,9 @@ export class MissionPageView implements View {
   }
 
   /** Shows a mission that was just opened as a whole. */
-  private fitOnce({ draft, world }: MissionPage): void {
+  private fitOnce({ draft, opened, world }: MissionPage): void {
     if (draft === null || world === null) return;
-    const key = `${draft.world} ${draft.name ?? ''} ${draft.base}`;
+    const key = `${opened} ${draft.world}`;
     if (this.fitted === key) return;
     this.fitted = key;
     this.map.fit();
@@ -161,7 +162,15 @@ export class MissionPageView implements View {
       { 'data-kind': kind },
       h('b', {}, title),
       ...places.map(({ text, hint, warning }) =>
-        h('button', { title: hint, onclick: () => this.goTo(warning.item, warning.from_s) }, text),
+        h(
+          'button',
+          {
+            'data-of': `${kind} ${text}`,
+            title: hint,
+            onclick: () => this.goTo(warning.item, warning.from_s),
+          },
+          text,
+        ),
       ),
     );
   }
@@ -267,6 +276,8 @@ export class MissionPageView implements View {
     const { missions, store } = this.context;
     const { draft, selected } = store.state.missionPage;
     if (draft === null) return false;
+    // It presses the button that has the focus, unless something is being placed.
+    if (key === 'Enter' && this.tools.placing === null) return false;
     const step = shiftKey ? 10 * kNudge_m : kNudge_m;
     const nudge = (east: number, north: number) => {
       if (selected === null) this.map.goTo(this.shifted(east * step * 10, north * step * 10));
@@ -290,7 +301,7 @@ export class MissionPageView implements View {
       c: () => this.tools.start(kCommand.circleTurns),
       t: () => this.tools.start(kCommand.takeOff),
       l: () => this.tools.start(kCommand.land),
-      Enter: () => this.tools.placing !== null && this.tools.placed(this.map.middle()),
+      Enter: () => this.tools.placed(this.map.middle()),
       f: () => this.map.fit(),
     };
     const action = actions[key];

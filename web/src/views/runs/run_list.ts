@@ -154,16 +154,22 @@ export class RunList implements View {
 
   private editNotes(run: Run): void {
     const { catalogue, store } = this.context;
+    // Once saved, the form of another run may have taken its place.
     const close = () => {
+      if (form.parentElement !== this.notes) return;
       this.notes.hidden = true;
       this.notes.replaceChildren();
     };
     const save = async (tags: string[], note: string) => {
       if (await catalogue.setNotes(run.id, tags, note)) close();
     };
-    this.notes.replaceChildren(
-      notesForm(run, store.state.runs ?? [], (tags, note) => void save(tags, note), close),
+    const form = notesForm(
+      run,
+      store.state.runs ?? [],
+      (tags, note) => void save(tags, note),
+      close,
     );
+    this.notes.replaceChildren(form);
     this.notes.hidden = false;
     this.notes.querySelector('input')?.focus();
   }

@@ -36,18 +36,15 @@ export class ScenarioForm {
   constructor(private readonly actions: FormActions) {}
 
   show(nodes: readonly FormNode[], errors: readonly FieldError[]): void {
-    const focused = this.root.contains(document.activeElement)
-      ? (document.activeElement?.id ?? '')
-      : '';
     rebuild(this.root, JSON.stringify(nodes, withoutTexts), () => {
       this.rows = new Map();
       this.headings = new Map();
-      return nodes.map((node) => this.node(node, 0));
+      const made = nodes.map((node) => this.node(node, 0));
+      // Before one of them gets the focus, in which it is left alone.
+      this.fill(nodes);
+      return made;
     });
     this.fill(nodes);
-    if (focused !== '' && document.activeElement?.id !== focused) {
-      document.getElementById(focused)?.focus();
-    }
     const found = errorsByPath([...this.rows.keys()], errors);
     for (const [path, { error, hint, control }] of this.rows) {
       const message = found.get(path) ?? '';

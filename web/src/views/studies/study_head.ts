@@ -68,6 +68,7 @@ export class StudyHead {
             {
               class: 'secondary',
               'data-role': 'cancel-study',
+              'data-of': name,
               disabled: cancelling,
               title: 'End it; what it has found stays, and it can be continued',
               onclick: () => void studies.cancel(name),
@@ -85,6 +86,7 @@ export class StudyHead {
                 {
                   class: 'primary',
                   'data-role': 'continue-study',
+                  'data-of': name,
                   title: 'Make it again; completed flights are not flown twice',
                   onclick: () => void studies.continue(name),
                 },
@@ -101,6 +103,7 @@ export class StudyHead {
       {
         class: asked ? 'secondary danger' : 'secondary',
         'data-role': 'delete-study',
+        'data-of': name,
         title: asked
           ? 'Click again to delete the study and its flights for good'
           : 'Delete the study and its flights',

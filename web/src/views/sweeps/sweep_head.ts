@@ -79,6 +79,7 @@ export class SweepHead {
           {
             class: 'secondary',
             'data-role': 'extend-sweep',
+            'data-of': sweep.name,
             title:
               'Change the sweep, for example with more values or repeats, and fly what it lacks',
             onclick: () => void this.context.sweeps.form.openSweep(sweep.name),
@@ -96,6 +97,7 @@ export class SweepHead {
       {
         class: asked && !cancelling ? 'secondary danger' : 'secondary',
         'data-role': 'cancel-sweep',
+        'data-of': name,
         disabled: cancelling,
         title: asked
           ? 'Click again to end the flights in progress; results stay'
@@ -119,6 +121,7 @@ export class SweepHead {
       {
         class: 'primary',
         'data-role': 'continue-sweep',
+        'data-of': name,
         disabled: hint !== null,
         title: hint ?? continueHint(envelope),
         onclick: () => void this.context.sweeps.continue(name),

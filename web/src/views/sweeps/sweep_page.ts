@@ -279,6 +279,7 @@ export class SweepPageView implements View {
         'button',
         {
           class: 'sweep-cell',
+          'data-of': cell.key,
           'data-kind': kind,
           'data-figure': figure === 'outcome' || figure === 'success' ? 'rate' : 'error',
           'aria-pressed': chosen ? 'true' : 'false',

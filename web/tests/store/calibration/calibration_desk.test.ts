@@ -4,6 +4,7 @@ import { RestClient } from '../../../src/connection/rest_client';
 import type { CalibrationSession } from '../../../src/protocol/calibration_types';
 import { CalibrationDesk, camerasOf } from '../../../src/store/calibration/calibration_desk';
 import { Notices } from '../../../src/store/notices';
+import { ScenarioDesk } from '../../../src/store/scenario/scenario_desk';
 import { Store } from '../../../src/store/state';
 import { sampleSession, sampleSolution } from '../../support/calibrations';
 
@@ -17,6 +18,8 @@ let store: Store;
 let asked: Asked[];
 let session: CalibrationSession | null;
 let later: (() => void)[];
+/** Of the launcher's scenario, which wait for a pause. */
+let checks: (() => void)[];
 let refusals: number;
 let desk: CalibrationDesk;
 
@@ -60,6 +63,7 @@ beforeEach(() => {
   asked = [];
   session = null;
   later = [];
+  checks = [];
   refusals = 0;
   const rest = new RestClient('api', (url, init) => {
     const method = init?.method ?? 'GET';
@@ -68,13 +72,11 @@ beforeEach(() => {
     return Promise.resolve(answer(method, url));
   });
   const wait = (callback: () => void) => later.push(callback);
-  desk = new CalibrationDesk(
-    store,
-    new CalibrationClient(rest),
-    rest,
-    new Notices(store, () => 0),
-    wait,
-  );
+  const notices = new Notices(store, () => 0);
+  const none = () => Promise.resolve();
+  const list = { readScenarios: none, selectScenario: none };
+  const scenarios = new ScenarioDesk(store, rest, list, notices, (check) => checks.push(check));
+  desk = new CalibrationDesk(store, new CalibrationClient(rest), rest, scenarios, notices, wait);
 });
 
 const page = () => store.state.calibrationPage;
@@ -148,6 +150,47 @@ describe('CalibrationDesk', () => {
     expect(page().error).toBeNull();
   });
 
+  it('sends images that are chosen while others are sent after them', async () => {
+    await desk.open();
+    await desk.begin();
+    page().session = sampleSession({ uploads: true });
+    session = page().session;
+    refusals = 1;
+    const first = desk.send([new File(['x'], 'a.png')]);
+    const second = desk.send([new File(['y'], 'b.png'), new File(['z'], 'c.png')]);
+    expect(page().sending).toEqual({ done: 0, total: 3 });
+    await settle();
+    await turn();
+    await Promise.all([first, second]);
+    const urls = asked.filter(({ url }) => url.includes('/images?')).map(({ url }) => url);
+    expect(urls.map((url) => url.slice(-5))).toEqual(['a.png', 'a.png', 'b.png', 'c.png']);
+    expect(page().sending).toBeNull();
+    expect(page().error).toBeNull();
+  });
+
+  it('sends the images of the session before no further', async () => {
+    await desk.open();
+    await desk.begin();
+    page().session = sampleSession({ uploads: true });
+    session = page().session;
+    refusals = 1;
+    const before = desk.send([new File(['x'], 'a.png'), new File(['y'], 'b.png')]);
+    await settle();
+    await desk.begin();
+    page().session = sampleSession({ id: 's2', uploads: true });
+    const now = desk.send([new File(['z'], 'c.png')]);
+    await turn();
+    await Promise.all([before, now]);
+    const urls = asked.filter(({ url }) => url.includes('/images?')).map(({ url }) => url);
+    expect(urls.map((url) => /sessions\/(\w+).*=(.*)/.exec(url)?.slice(1))).toEqual([
+      ['s1', 'a.png'],
+      ['s2', 'c.png'],
+      ['s1', 'a.png'],
+    ]);
+    expect(page().sending).toBeNull();
+    expect(page().error).toBeNull();
+  });
+
   it('tells when the server has closed the session', async () => {
     await desk.open();
     await desk.begin();
@@ -168,6 +211,31 @@ describe('CalibrationDesk', () => {
     desk.useInScenario('/up/front.json', 'front');
     const edit = store.state.scenarioEdits.get('camera') ?? '';
     expect(JSON.parse(edit)).toEqual({ calibration: '/up/front.json', rate_hz: 31 });
+  });
+
+  it('keeps the changes of the camera when it uses a calibration, and has them checked', () => {
+    const { state } = store;
+    state.scenarioDocument = { camera: { fov_deg: 80, rate_hz: 31 } };
+    state.scenarioEdits = new Map([['camera', '{"fov_deg": 90, "rate_hz": 20, "name": "down"}']]);
+    desk.useInScenario('/up/front.json', 'front');
+    expect(JSON.parse(state.scenarioEdits.get('camera') ?? '')).toEqual({
+      calibration: '/up/front.json',
+      rate_hz: 20,
+      name: 'down',
+    });
+    expect(state.scenarioEditor.check).toBe('waiting');
+    expect(checks).toHaveLength(1);
+  });
+
+  it('leaves a camera that is no JSON to the viewer', () => {
+    const { state } = store;
+    state.scenarioDocument = { camera: { fov_deg: 80 } };
+    state.scenarioEdits = new Map([['camera', '{"fov_deg": 9']]);
+    desk.useInScenario('/up/front.json', 'front');
+    expect(state.scenarioEdits.get('camera')).toBe('{"fov_deg": 9');
+    expect(state.notices.map(({ level, text }) => `${level}: ${text}`)).toEqual([
+      expect.stringMatching(/^error: Correct the scenario first: camera is not JSON/u),
+    ]);
   });
 });
 

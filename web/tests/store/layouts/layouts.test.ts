@@ -89,6 +89,49 @@ describe('the layouts', () => {
     expect(open(storage).layouts.ownNames).toEqual([]);
   });
 
+  it('stay when the dashboard is open twice', () => {
+    const storage = new FakeStorage();
+    const first = open(storage).layouts;
+    const second = open(storage).layouts;
+    first.saveAs('First');
+    second.onRearranged(kTree);
+    second.saveAs('Second');
+    first.choose('fly');
+    expect(first.ownNames).toEqual(['First', 'Second']);
+    expect(open(storage).layouts.ownNames).toEqual(['First', 'Second']);
+    expect(second.copies(['First'])).toHaveLength(1);
+    second.remove('First');
+    first.choose('First');
+    expect(first.current, 'the other page has deleted it').toBe('fly');
+    expect(first.add([{ name: 'Third', tree: kTree, look: null }])).toEqual(['Third']);
+    expect(open(storage).layouts.ownNames).toEqual(['Second', 'Third']);
+  });
+
+  it('stay on the screen when another page deletes them', () => {
+    const storage = new FakeStorage();
+    const { layouts, arranged } = open(storage);
+    layouts.saveAs('Mine');
+    const other = open(storage).layouts;
+    other.remove('Mine');
+    other.choose('camera');
+    layouts.add([]);
+    expect(layouts.ownNames).toEqual([]);
+    expect(layouts.shared).toEqual({ name: 'fly', tree: kTree });
+    expect(arranged()).toBe(0);
+  });
+
+  it('last until the page is closed if the browser keeps no more', () => {
+    const storage = new FakeStorage();
+    const { layouts } = open(storage);
+    layouts.saveAs('Kept');
+    storage.setItem = () => {
+      throw new Error('full');
+    };
+    layouts.saveAs('Mine');
+    layouts.choose('fly');
+    expect(layouts.ownNames).toEqual(['Kept', 'Mine']);
+  });
+
   it('open the layout of a link', () => {
     const { layouts, arranged } = open(new FakeStorage());
     layouts.open({ name: null, tree: null });

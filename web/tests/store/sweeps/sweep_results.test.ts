@@ -82,5 +82,19 @@ describe('SweepResults', () => {
     store.state.sweepPage.name = 'other';
     await late;
     expect(state().comparison).toBe('success: unknown');
+    expect(state().comparing).toBe(false);
   });
+
+  it.each([{ baseline: 'dusk' }, { estimator: 'feature' }])(
+    'drops the answer when something else is to be compared: %o',
+    async (change) => {
+      const { made, state } = results();
+      made.set({ baseline: 'day' });
+      const late = made.compare('night');
+      made.set(change);
+      await late;
+      expect(state().comparison).toBeNull();
+      expect(state().comparing).toBe(false);
+    },
+  );
 });
