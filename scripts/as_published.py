@@ -20,7 +20,8 @@ def as_published(sweep, folder, world):
     return {
         **sweep,
         "title": sweep["title"] + ", as published",
-        "description": f"In real time, feature at {FRAMES_PER_S} frames per second, imagery of 1 m per pixel.",
+        "description": "In real time over imagery of 1 m per pixel; "
+                       f"feature and ORB-SLAM2 at {FRAMES_PER_S} frames per second.",
         "scenario": str((folder / sweep["scenario"]).resolve()),
         "set": {**sweep.get("set", {}), "pacing": "real_time", "world": {"manifest": str(world.resolve())}},
         "estimators": [estimator, *idle],
