@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <thread>
 
@@ -84,6 +85,8 @@ TEST_F(JobFolderTest, AJobIsWithdrawnWhileItsFlightIsWritten) {
     std::error_code ignored;
     for (std::size_t i = 0; !over; ++i) {
       fs::create_directories(run / std::to_string(i), ignored);
+      // Slower than they are removed.
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
   });
   for (int i = 0; i < 100; ++i) {
