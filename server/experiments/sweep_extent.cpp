@@ -17,12 +17,12 @@ std::vector<std::string> estimators_of(const Json& sweep) {
   return names;
 }
 
-std::optional<int> most_repeats_of(const Json& sweep) {
+std::optional<std::int64_t> most_repeats_of(const Json& sweep) {
   const auto repeats = sweep.find("repeats");
   if (repeats == sweep.end() || !repeats->is_object()) return std::nullopt;
   const auto most = repeats->find("most");
   if (most == repeats->end() || !most->is_number_integer()) return std::nullopt;
-  return most->get<int>();
+  return most->get<std::int64_t>();
 }
 
 }  // namespace
@@ -32,7 +32,11 @@ SweepExtent::SweepExtent(const Json& sweep) {
   estimators_ = estimators_of(sweep);
   most_repeats_ = most_repeats_of(sweep);
   const auto values = sweep.find("axis_values");
-  if (values != sweep.end() && values->is_object()) axis_values_ = *values;
+  if (values == sweep.end() || !values->is_object()) return;
+  axis_values_.emplace();
+  for (const auto& [axis, known] : values->items()) {
+    (*axis_values_)[axis].insert(known.begin(), known.end());
+  }
 }
 
 bool SweepExtent::contains(const SweepResult& result) const {
@@ -47,8 +51,7 @@ bool SweepExtent::has_cell(const Json& cell) const {
   const auto items = cell.items();
   return std::all_of(items.begin(), items.end(), [&](const auto& item) {
     const auto values = axis_values_->find(item.key());
-    return values != axis_values_->end() && values->is_array() &&
-           std::find(values->begin(), values->end(), item.value()) != values->end();
+    return values != axis_values_->end() && values->second.contains(item.value());
   });
 }
 

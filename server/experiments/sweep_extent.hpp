@@ -2,8 +2,11 @@
 // flown before the sweep was changed.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,8 +27,8 @@ class SweepExtent {
   [[nodiscard]] bool has_cell(const nlohmann::json& cell) const;
 
   std::vector<std::string> estimators_;
-  std::optional<nlohmann::json> axis_values_;  ///< axis name -> values
-  std::optional<int> most_repeats_;
+  std::optional<std::map<std::string, std::set<nlohmann::json>>> axis_values_;
+  std::optional<std::int64_t> most_repeats_;
 };
 
 }  // namespace overfly::server::experiments

@@ -9,12 +9,9 @@
 
 #include "core/text/number_text.hpp"
 #include "server/experiments/explain/data_limit.hpp"
+#include "server/experiments/explain/explained_run.hpp"
 #include "server/experiments/flight_files.hpp"
-#include "server/record/run_folder.hpp"
-#include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
-#include "server/scenario/document/scenario_file.hpp"
-#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -44,18 +41,9 @@ std::string share_name(Cause cause, double share) {
   return text + words_for(cause);
 }
 
-/// What is explained.
-struct FailedRun {
-  fs::path folder;
-  Json document;
-  std::size_t estimator = 0;
-  double duration_s = 0.0;
-  evaluation::Score score;
-};
-
 class Explainer {
  public:
-  Explainer(const FailedRun& run, const ExplainOptions& options, Explanation explanation)
+  Explainer(const ExplainedRun& run, const ExplainOptions& options, Explanation explanation)
       : run_(run),
         options_(options),
         flights_(options.flights, run.folder),
@@ -319,7 +307,7 @@ class Explainer {
     return {};
   }
 
-  const FailedRun& run_;
+  const ExplainedRun& run_;
   const ExplainOptions& options_;
   Reflights flights_;
   Explanation result_;
@@ -332,84 +320,23 @@ class Explainer {
   Causes left_out_;  ///< not tried because of the limit, the least suspicious first
 };
 
-Error not_explainable(const fs::path& folder, const std::string& reason) {
-  return {ErrorCode::kInvalidArgument, folder.string() + ": " + reason};
-}
-
-std::string known_names(const RunMetrics& metrics) {
-  std::string names;
-  for (const auto& [name, estimator] : metrics.estimators) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
-/// The estimator to be explained.
-Result<std::string> chosen_estimator(const RunMetrics& metrics,
-                                     const Json& document,
-                                     const std::string& wanted) {
-  if (metrics.estimators.contains(wanted)) return wanted;
-  if (!wanted.empty()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "estimator = " + wanted + ": must be one of " + known_names(metrics)};
-  }
-  std::optional<std::string> first;
-  for (const Json& entry : document.at("estimators")) {
-    const std::string name = entry.at("name").get<std::string>();
-    const auto found = metrics.estimators.find(name);
-    if (found == metrics.estimators.end()) continue;
-    if (!first) first = name;
-    if (found->second.score.outcome != Outcome::kCompleted) return name;
-  }
-  if (first) return *first;
-  return Error{ErrorCode::kInvalidArgument, "the run has no estimator"};
-}
-
-bool has_recorded_images(const Json& document) {
-  const auto recorded = [](const Json& camera) { return camera.contains("images"); };
-  if (document.contains("camera")) return recorded(document.at("camera"));
-  const Json cameras = document.value("cameras", Json::array());
-  return std::any_of(cameras.begin(), cameras.end(), recorded);
-}
-
 }  // namespace
 
 Result<Explanation> explain_run(const fs::path& run_folder, const ExplainOptions& options) {
-  const fs::path folder = fs::absolute(run_folder).lexically_normal();
-  const Result<RunInfo> info = read_run_info(folder);
-  if (!info) return info.error();
-  if (info->status != RunStatus::kCompleted) {
-    return not_explainable(
-        folder, std::string("status = ") + to_string(info->status) + ": must be completed");
-  }
-  const Result<RunMetrics> metrics = read_run_metrics(folder);
-  if (!metrics) return metrics.error();
-  const Result<Scenario> scenario =
-      load_scenario(scenario_file(folder), {}, options.flights.sources);
-  if (!scenario) return scenario.error();
-  const Json& document = scenario->resolved;
-  if (has_recorded_images(document)) {
-    return not_explainable(folder, "recorded images cannot be taken again without a disturbance");
-  }
-  const Result<std::string> name = chosen_estimator(*metrics, document, options.estimator);
-  if (!name) return not_explainable(folder, name.error().message);
-
-  FailedRun run{folder, document, 0, metrics->flight.duration_s, {}};
-  run.score = metrics->estimators.at(*name).score;
-  const Json& entries = document.at("estimators");
-  while (entries.at(run.estimator).at("name") != *name) ++run.estimator;
-
+  const Result<ExplainedRun> run =
+      read_explained_run(run_folder, options.estimator, options.flights.sources);
+  if (!run) return run.error();
   Explanation explanation;
-  explanation.run = info->id;
-  explanation.title = info->title;
-  explanation.estimator = *name;
-  explanation.score = run.score;
-  explanation.succeeded = run.score.outcome == Outcome::kCompleted;
+  explanation.run = run->id;
+  explanation.title = run->title;
+  explanation.estimator = run->estimator_name;
+  explanation.score = run->score;
+  explanation.succeeded = run->score.outcome == Outcome::kCompleted;
   if (explanation.succeeded) return explanation;
   if (Status status = FlightFiles(options.flights.folder).create(); !status) return status.error();
   const Result<RunLock> lock = RunLock::take(options.flights.folder);
   if (!lock) return lock.error();
-  return Explainer(run, options, std::move(explanation)).explain();
+  return Explainer(*run, options, std::move(explanation)).explain();
 }
 
 }  // namespace overfly::server::experiments

@@ -116,14 +116,23 @@ Result<SweepScores> read_sweep_scores(const fs::path& folder, const std::atomic<
   const SweepExtent extent(*sweep);
   scores.estimators = extent.estimators();
   RunReader runs(folder);
+  std::size_t others = 0;
   for (const SweepResult* result : results->newest()) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
-    if (!result->cell.is_object() || !extent.contains(*result)) continue;
+    if (!result->cell.is_object()) continue;
+    if (!extent.contains(*result)) {
+      ++others;
+      continue;
+    }
     if (result->completed()) {
       add_flight(*result, runs, scores);
     } else {
       ++scores.failed;
     }
+  }
+  if (others > 0) {
+    scores.problems.push_back(std::to_string(others) +
+                              " results of flights that the sweep no longer has");
   }
   if (scores.flights.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": has no completed flight"};

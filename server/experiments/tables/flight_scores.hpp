@@ -40,7 +40,7 @@ struct SweepScores {
   std::vector<nlohmann::json> cells;    ///< of the flights, in ascending order of the axes' values
   std::vector<FlightScore> flights;
   std::size_t failed = 0;             ///< flights without a result
-  std::vector<std::string> problems;  ///< runs whose metrics cannot be read, each with its reason
+  std::vector<std::string> problems;  ///< what is left out, with the reason
 };
 
 /// Reads sweep.json, results.jsonl and the metrics of the newest result of every flight.

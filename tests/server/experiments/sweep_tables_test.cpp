@@ -300,6 +300,7 @@ TEST_F(SweepTablesTest, LeavesOutFlightsThatTheSweepNoLongerHas) {
   ASSERT_EQ(made.rows.size(), 1U);
   EXPECT_EQ(made.rows[0].estimator, "one");
   EXPECT_EQ(made.rows[0].flights, 2);
+  EXPECT_THAT(markdown(), HasSubstr("3 results of flights that the sweep no longer has"));
 }
 
 TEST_F(SweepTablesTest, TakesTheNewestResultOfAFlight) {
