@@ -202,6 +202,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     await page.locator('.notes-form [type=submit]').click();
     await page.locator('.run-notes').waitFor({ state: 'hidden' });
     const tag = page.locator(`.run[data-run="${kSlow}"] .tag`);
+    await tag.nth(1).waitFor();
     assert.deepEqual(await tag.allInnerTexts(), ['wind', 'for the paper']);
     const kept = readFileSync(path.join(stage.runs.folder, kSlow, 'notes.json'), 'utf8');
     assert.deepEqual(JSON.parse(kept), {
@@ -354,7 +355,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
     const { frame, t_ns } = await dashboard.playback();
     await dashboard.until(
       (t_s) => location.hash.includes('&main=') && location.hash.endsWith(`&t=${t_s}`),
-      (t_ns / 1e9).toFixed(3),
+      t_ns / 1e9,
     );
     const before = await readouts('x_m');
     const address = page.url();

@@ -251,9 +251,33 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.page.locator('.help').waitFor({ state: 'hidden' });
   });
 
+  step('gives the keyboard to a page over it, and back to what opened the page', async () => {
+    const { page } = dashboard;
+    const opener = page.locator('[data-role=open-sweeps]');
+    const { frame } = await dashboard.playback();
+    await opener.focus();
+    await page.keyboard.press('Enter');
+    await page.locator('.sweep-page:focus').waitFor();
+    await page.keyboard.press('ArrowRight');
+    for (let i = 0; i < 12; i += 1) {
+      await page.keyboard.press('Tab');
+      const reached = await page.evaluate(
+        () => document.activeElement.closest('.header-bar, .frame, .timeline')?.className,
+      );
+      assert.equal(reached, undefined);
+    }
+    await page.keyboard.press('Escape');
+    await page.locator('[data-role=open-sweeps]:focus').waitFor();
+    assert.equal((await dashboard.playback()).frame, frame);
+    await page.keyboard.press('ArrowLeft');
+    await dashboard.untilCursor(frame - 1);
+    await page.keyboard.press('ArrowRight');
+    await dashboard.untilCursor(frame);
+  });
+
   step('shows the same run and instant again from a copied address', async () => {
     const { frame, t_ns } = await dashboard.playback();
-    await dashboard.until((t) => location.hash.endsWith(`t=${(t / 1e9).toFixed(3)}`), t_ns);
+    await dashboard.until((t) => location.hash.endsWith(`t=${t / 1e9}`), t_ns);
     await dashboard.page.reload();
     await dashboard.untilCursor(frame);
     await dashboard.untilSameInstant();

@@ -87,8 +87,8 @@ export class CalibrationClient {
     await this.rest.call('DELETE', `/calibrations/${encodeURIComponent(name)}`);
   }
 
-  fileUrl(name: string, format: string): string {
-    return `${this.rest.base}/calibrations/${encodeURIComponent(name)}?format=${format}`;
+  async file(name: string, format: string): Promise<Blob> {
+    return this.rest.file(`/calibrations/${encodeURIComponent(name)}?format=${format}`);
   }
 }
 

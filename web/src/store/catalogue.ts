@@ -17,6 +17,8 @@ const kPollIdle_ms = 8000;
 
 export class Catalogue {
   private polling = false;
+  /** Ids of the runs that were over in the last list; the stream changes those of the state. */
+  private over: ReadonlySet<string> = new Set();
 
   constructor(
     private readonly store: Store,
@@ -213,11 +215,7 @@ export class Catalogue {
       state.runs = await this.rest.runs();
       this.announceEnded(before ?? [], state.runs);
       state.listError = null;
-      for (const watched of state.watched) {
-        if (watched.run !== null) continue;
-        watched.run = state.runs.find(({ id }) => id === watched.id) ?? null;
-        if (watched.run !== null) this.store.change('run');
-      }
+      for (const run of state.runs) this.takeListed(run);
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
       state.listError = errorText(error);
@@ -225,11 +223,23 @@ export class Catalogue {
     this.store.change('lists');
   }
 
-  /** Says which runs ended; those that the viewer stopped are not announced. */
+  /** What the stream does not send about a watched run: its results, tags and note. */
+  private takeListed(listed: Run): void {
+    const watched = this.store.state.watchedRun(listed.id);
+    if (watched === undefined) return;
+    const { results, tags, note } = listed;
+    const run = watched.run === null ? listed : { ...watched.run, results, tags, note };
+    if (JSON.stringify(run) === JSON.stringify(watched.run)) return;
+    watched.run = run;
+    this.store.change('run');
+  }
+
+  /** Says which known runs ended; those that the viewer stopped are not announced. */
   private announceEnded(before: readonly Run[], now: readonly Run[]): void {
-    const active = new Set(before.filter(isActive).map(({ id }) => id));
+    const known = new Set(before.map(({ id }) => id).filter((id) => !this.over.has(id)));
+    this.over = new Set(now.filter((run) => !isActive(run)).map(({ id }) => id));
     for (const run of now) {
-      if (!active.has(run.id)) continue;
+      if (!known.has(run.id)) continue;
       const name = run.title || run.scenario;
       if (run.status === 'completed') this.notices.info(`${name}: the flight is complete.`);
       if (run.status === 'failed') {

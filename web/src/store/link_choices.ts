@@ -53,8 +53,7 @@ export function writeChoices(choices: LinkChoices, fields: URLSearchParams): voi
   if (plotGroup !== null) fields.set('plots', plotGroup);
   if (window_s !== null) fields.set('window', window_s.map((t_s) => t_s.toFixed(3)).join(','));
   if (range !== null) {
-    const ends = [range.begin_ns, range.end_ns].map((t_ns) => (t_ns / 1e9).toFixed(3));
-    fields.set('range', ends.join(','));
+    fields.set('range', [range.begin_ns, range.end_ns].map(secondsText).join(','));
   }
   if (speed !== 1) fields.set('speed', String(speed));
   if (loop) fields.set('loop', '1');
@@ -107,6 +106,11 @@ export function readPart<T>(
   const value = reader(text);
   if (value === null) problems.push(`${name}=${text.length > 40 ? `${text.slice(0, 40)}…` : text}`);
   return value;
+}
+
+/** Exact: at a rounded time the server may show the frame before. */
+export function secondsText(t_ns: number): string {
+  return (t_ns / 1e9).toFixed(9).replace(/\.?0+$/, '');
 }
 
 /** Of an estimator or a camera. */

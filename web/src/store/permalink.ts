@@ -4,7 +4,7 @@ import { layoutOfText, layoutText } from './layouts/layout_text';
 import type { LayoutNode } from './layouts/layout_tree';
 import { LayoutError } from './layouts/layout_tree';
 import type { LinkChoices } from './link_choices';
-import { nameOf, readChoices, readPart, writeChoices } from './link_choices';
+import { nameOf, readChoices, readPart, secondsText, writeChoices } from './link_choices';
 import { kMostRuns } from './session';
 import type { TrackColour } from './track_colours';
 import { isTrackColour } from './track_colours';
@@ -94,7 +94,7 @@ export function formatPermalink(link: Permalink): string {
   if (study !== null) fields.set('study', study);
   if (runs.length === 0) return fields.size === 0 ? '' : `#${fields.toString()}`;
   for (const { id, offset_ns } of runs) {
-    fields.append('run', offset_ns === 0 ? id : `${id}@${(offset_ns / 1e9).toFixed(3)}`);
+    fields.append('run', offset_ns === 0 ? id : `${id}@${secondsText(offset_ns)}`);
   }
   if (main !== null && main !== runs[0]?.id) fields.set('main', main);
   if (view !== '') fields.set('view', view);
@@ -109,7 +109,7 @@ export function formatPermalink(link: Permalink): string {
     if (camera !== null) fields.append('camera', ofRun(i, camera));
   });
   writeChoices(choices, fields);
-  if (t_ns !== null) fields.set('t', (t_ns / 1e9).toFixed(3));
+  if (t_ns !== null) fields.set('t', secondsText(t_ns));
   return `#${fields.toString()}`;
 }
 

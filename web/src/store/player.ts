@@ -5,8 +5,6 @@ import type { Session } from './session';
 import type { Store } from './state';
 import { nearestIndex } from './table';
 
-const kSecond_ns = 1e9;
-
 export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50] as const;
 
 export class Player {
@@ -50,10 +48,10 @@ export class Player {
   /** Row of the main run's frame nearest to a time of the clock; null outside of this run. */
   private rowNear(t_ns: number): number | null {
     const { data, offset_ns } = this.store.state;
-    const stamps = data.truth.column('t_ns');
-    const row = nearestIndex(stamps, t_ns - offset_ns);
-    const off_ns = Math.abs((stamps[row] ?? NaN) - (t_ns - offset_ns));
-    return row >= 0 && off_ns < kSecond_ns ? row : null;
+    const { truth } = data;
+    const run_ns = t_ns - offset_ns;
+    if (truth.length === 0 || run_ns < 0 || run_ns > truth.last('t_ns')) return null;
+    return nearestIndex(truth.column('t_ns'), run_ns);
   }
 
   seekBy(delta_ns: number): void {
@@ -108,7 +106,7 @@ export class Player {
   }
 
   goLive(): void {
-    if (this.store.state.run?.status === 'running') this.command({ type: 'live' });
+    if (this.store.state.clock?.flying === true) this.command({ type: 'live' });
   }
 
   private speed(): number {

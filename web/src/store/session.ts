@@ -4,7 +4,7 @@ import type { ClientMessage, PictureStream, Resume, ServerMessage } from '../pro
 import type { PictureMessage } from '../protocol/parse';
 import type { StreamedRun } from '../protocol/rest_types';
 import type { ClockSettings } from './clock_settings';
-import { kUsualClock, settingCommands } from './clock_settings';
+import { kUsualClock, restoringCommands, settingCommands } from './clock_settings';
 import type { Notices } from './notices';
 import type { Decode } from './pictures/picture_decoder';
 import type { OpenVideo } from './pictures/video_decoding';
@@ -27,9 +27,7 @@ export class Session implements StreamListener {
   private readonly decoders = new Map<string, PictureDecoder>();
   /** Where and how to begin when the server has sent where all runs are. */
   private pending: { t_ns: number | null; settings: ClockSettings | null } | null = null;
-  /**
-   * Position of a live viewer when the connection was lost; used if the run has ended meanwhile.
-   */
+  /** Position of a live viewer when the connection was lost, until all runs are there again. */
   private livePlace_ns: number | null = null;
   private readonly wishes = new PictureWishes();
   /** A page that is not on the screen needs no pictures. */
@@ -82,22 +80,27 @@ export class Session implements StreamListener {
       state.clock = null;
       state.wantedSpeed = null;
       this.livePlace_ns = null;
-      this.pending = { t_ns, settings };
-    } else if (this.pending !== null) {
-      const { pending } = this;
-      this.pending = { t_ns: t_ns ?? pending.t_ns, settings: settings ?? pending.settings };
-    } else {
-      const now = state.clock ?? kUsualClock;
-      for (const command of settingCommands(settings ?? now, now)) this.command(command);
-      if (t_ns !== null) this.command({ type: 'seek', t_ns });
+      this.pending = null;
     }
-    for (const { id, offset_ns } of runs) {
-      if (state.watchedRun(id) === undefined) this.watch(id, offset_ns);
-      else this.setOffset(id, offset_ns);
-    }
+    const added = runs.filter(({ id }) => state.watchedRun(id) === undefined);
+    for (const { id, offset_ns } of runs) this.setOffset(id, offset_ns);
+    for (const { id, offset_ns } of added) this.watch(id, offset_ns);
     state.main = (main === null ? undefined : state.watchedRun(main)) ?? state.watched[0] ?? null;
+    this.setClock(t_ns, settings, added.length > 0);
     this.subscribe();
     this.changedRuns();
+  }
+
+  /** Waits if runs were added: before they are there, the time would be limited to the others. */
+  private setClock(t_ns: number | null, settings: ClockSettings | null, added: boolean): void {
+    if (added || this.pending !== null) {
+      const before = this.pending ?? { t_ns: null, settings: null };
+      this.pending = { t_ns: t_ns ?? before.t_ns, settings: settings ?? before.settings };
+      return;
+    }
+    const now = this.state.clock ?? kUsualClock;
+    for (const command of settingCommands(settings ?? now, now)) this.command(command);
+    if (t_ns !== null) this.command({ type: 'seek', t_ns });
   }
 
   /** Shows a run together with those that are watched. */
@@ -247,13 +250,8 @@ export class Session implements StreamListener {
         commands.push({ type: 'align', run: one.id, mode: shownAlignment(one) });
       }
     }
-    commands.push(...settingCommands(clock, kUsualClock));
-    this.livePlace_ns = clock.live ? clock.t_ns : null;
-    if (!clock.live) {
-      commands.push({ type: 'seek', t_ns: clock.t_ns });
-      commands.push({ type: clock.playing ? 'play' : 'pause' });
-    }
-    return commands;
+    if (clock.live) this.livePlace_ns = clock.t_ns;
+    return [...commands, ...restoringCommands(clock)];
   }
 
   // ---- the watched runs ------------------------------------------------------------------------
@@ -358,20 +356,22 @@ export class Session implements StreamListener {
     for (const watched of state.watched) watched.instant = message.runs[watched.id] ?? null;
     if (clock.speed === state.wantedSpeed) state.wantedSpeed = null;
     this.store.change('playback');
-    if (state.playback === null) return;
-    const place_ns = this.livePlace_ns;
-    this.livePlace_ns = null;
-    if (place_ns !== null && !clock.live) this.command({ type: 'seek', t_ns: place_ns });
+    if (clock.live) this.livePlace_ns = null;
     this.begin();
   }
 
-  /** Before all runs are there, the time would be limited to those that are. */
+  /** Once all runs are there. */
   private begin(): void {
     const { clock, watched } = this.state;
-    const { pending } = this;
-    if (pending === null || clock === null) return;
+    if (clock === null) return;
     if (watched.some(({ instant }) => instant === null)) return;
+    const { livePlace_ns, pending } = this;
+    this.livePlace_ns = null;
     this.pending = null;
+    if (livePlace_ns !== null) {
+      this.command(clock.flying ? { type: 'live' } : { type: 'seek', t_ns: livePlace_ns });
+    }
+    if (pending === null) return;
     const { t_ns, settings } = pending;
     for (const command of settingCommands(settings ?? clock, clock)) this.command(command);
     if (t_ns === null) return;

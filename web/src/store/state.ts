@@ -113,6 +113,22 @@ export class State {
   sweepPage: SweepPage = initialSweepPage();
   studyPage: StudyPage = initialStudyPage();
 
+  /** The pages over the dashboard, which cover it while they are open. */
+  get pages(): readonly { open: boolean }[] {
+    return [
+      this.scenarioEditor,
+      this.logPage,
+      this.scorePage,
+      this.calibrationPage,
+      this.missionPage,
+      this.sweepPage,
+      this.studyPage,
+    ];
+  }
+  get covered(): boolean {
+    return this.pages.some(({ open }) => open);
+  }
+
   // ---- the main run ----------------------------------------------------------------------------
 
   get runId(): string | null {

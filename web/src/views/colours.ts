@@ -39,7 +39,7 @@ const kAxisColours = ['var(--axis-x)', 'var(--axis-y)', 'var(--axis-z)'] as cons
 // The truth lies below the estimates and stays visible where they agree.
 const kTruthWidth_px = 3;
 const kCurveWidth_px = 1.25;
-/** Of truths by the position of the run; of estimates when the colours begin again. */
+/** Of truths by the position of the run; of other curves when the colours begin again. */
 const kDashes = [[], [7, 4], [2, 3], [9, 3, 2, 3]] as const;
 
 /** Of an estimate by a second alignment. */
@@ -67,7 +67,11 @@ export function curveStyle(hue: CurveHue): CurveStyle {
         dash: hue.second === true ? [...kSecondDash] : dashOf(roundOf(hue.colour)),
       };
     case 'run':
-      return { ...thin, colour: cyclic(kNeutralColours, hue.order) };
+      return {
+        ...thin,
+        colour: cyclic(kNeutralColours, hue.order),
+        dash: dashOf(Math.floor(hue.order / kNeutralColours.length)),
+      };
     case 'axis':
       return { ...thin, colour: cyclic(kAxisColours, hue.axis) };
   }

@@ -1,4 +1,4 @@
-// A page over the dashboard, loaded when it is first opened.
+// A page over the dashboard, loaded when it is first opened. It gets the keyboard while it is open.
 import type { State, Topic } from '../store/state';
 import { kTopics } from '../store/state';
 import { h } from './dom';
@@ -16,23 +16,56 @@ export class PageOverlay implements View {
   readonly root: HTMLElement;
   private page: View | null = null;
   private loading = false;
+  /** What had the focus when the page was opened. */
+  private before: Element | null = null;
 
+  /** @param behind  what cannot be reached while a page covers it */
   constructor(
     private readonly context: Context,
     private readonly options: PageOptions,
+    private readonly behind: readonly HTMLElement[],
   ) {
     this.root = h('div', {
       class: 'overlay log-overlay',
       hidden: true,
+      tabindex: -1,
       'data-panel': options.name,
     });
   }
 
   update(changed: ReadonlySet<Topic>): void {
     const { topic, page } = this.options;
-    if (changed.has(topic)) this.root.hidden = !page(this.context.store.state).open;
+    const { open } = page(this.context.store.state);
+    const opens = changed.has(topic) && open && this.root.hidden;
+    if (opens) this.uncover();
+    if (changed.has(topic) && !open && !this.root.hidden) this.leave();
     if (this.page !== null) this.page.update(changed);
     else if (!this.root.hidden) void this.load();
+    if (opens) this.takeFocus();
+  }
+
+  private uncover(): void {
+    this.before = document.activeElement;
+    this.root.hidden = false;
+    this.disableBehind();
+  }
+
+  private leave(): void {
+    const { activeElement } = document;
+    const had = activeElement === document.body || this.root.contains(activeElement);
+    this.root.hidden = true;
+    this.disableBehind();
+    if (had && this.before instanceof HTMLElement) this.before.focus();
+  }
+
+  private disableBehind(): void {
+    for (const part of this.behind) part.inert = this.context.store.state.covered;
+  }
+
+  /** A page may have given it to a part of itself. */
+  private takeFocus(): void {
+    const page = this.page?.root ?? this.root;
+    if (!page.contains(document.activeElement)) page.focus({ preventScroll: true });
   }
 
   private async load(): Promise<void> {
@@ -41,8 +74,11 @@ export class PageOverlay implements View {
     const { context, options } = this;
     try {
       this.page = await options.load(context);
+      this.page.root.tabIndex = -1;
       this.root.append(this.page.root);
+      const waits = document.activeElement === this.root;
       this.page.update(kTopics);
+      if (waits) this.takeFocus();
     } catch {
       this.loading = false;
       options.page(context.store.state).open = false;

@@ -1,55 +1,58 @@
 // The pages over the dashboard: the scenario editor, flight logs, scores of trajectories, calibration of a camera,
 // missions, sweeps, studies.
 import { isLayoutFile } from '../store/layouts/layout_file';
+import type { PageOptions } from './page_overlay';
 import { PageOverlay } from './page_overlay';
 import type { Context, View } from './view';
 
-export function makePages(context: Context): View[] {
-  return [
-    new PageOverlay(context, {
+/** @param behind  what the pages cover */
+export function makePages(context: Context, behind: readonly HTMLElement[]): View[] {
+  const pages: PageOptions[] = [
+    {
       name: 'scenario',
       topic: 'launch',
       page: ({ scenarioEditor }) => scenarioEditor,
       load: async (owner) => new (await import('./scenario/scenario_page')).ScenarioPageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'logs',
       topic: 'logs',
       page: ({ logPage }) => logPage,
       load: async (owner) => new (await import('./logs/log_page')).LogPageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'scoring',
       topic: 'scoring',
       page: ({ scorePage }) => scorePage,
       load: async (owner) => new (await import('./scoring/score_page')).ScorePageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'calibration',
       topic: 'calibration',
       page: ({ calibrationPage }) => calibrationPage,
       load: async (owner) =>
         new (await import('./calibration/calibration_page')).CalibrationPageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'missions',
       topic: 'missions',
       page: ({ missionPage }) => missionPage,
       load: async (owner) => new (await import('./missions/mission_page')).MissionPageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'sweeps',
       topic: 'sweeps',
       page: ({ sweepPage }) => sweepPage,
       load: async (owner) => new (await import('./sweeps/sweep_page')).SweepPageView(owner),
-    }),
-    new PageOverlay(context, {
+    },
+    {
       name: 'studies',
       topic: 'studies',
       page: ({ studyPage }) => studyPage,
       load: async (owner) => new (await import('./studies/study_page')).StudyPageView(owner),
-    }),
+    },
   ];
+  return pages.map((page) => new PageOverlay(context, page, behind));
 }
 
 /**

@@ -109,6 +109,8 @@ export class Palette implements View {
   private run(command: Command | undefined): void {
     if (command === undefined) return;
     this.close();
+    // A page that the command opens takes the focus.
+    this.leave();
     command.run();
   }
 

@@ -14,11 +14,11 @@ import type { Context, View } from './view';
 /** Builds the screen and redraws changed parts, at most once per frame. */
 export function showScreen(context: Context, place: HTMLElement): void {
   const frame = new Frame(context);
+  const dashboard: View[] = [new HeaderBar(context), frame, new Timeline(context)];
+  const covered = dashboard.map(({ root }) => root);
   const views: View[] = [
-    new HeaderBar(context),
-    frame,
-    new Timeline(context),
-    ...makePages(context),
+    ...dashboard,
+    ...makePages(context, covered),
     new ConnectDialog(context),
     new NoticesView(context),
     new HelpOverlay(context),

@@ -6,6 +6,8 @@ interface Shortcut {
   keys: readonly string[];
   label: string;
   what: string;
+  /** Steers nothing that a page covers. */
+  overPages?: true;
   run: (context: Context) => void;
 }
 
@@ -127,17 +129,31 @@ export const kShortcuts: readonly Shortcut[] = [
     keys: ['ctrl+k'],
     label: 'Ctrl K',
     what: 'every command by name',
+    overPages: true,
     run: ({ store }) => {
       store.state.paletteOpen = true;
       store.change('palette');
     },
   },
-  { keys: ['t'], label: 'T', what: 'next theme', run: ({ themes }) => themes.next() },
-  { keys: ['?', 'shift+?'], label: '?', what: 'this help', run: ({ store }) => toggleHelp(store) },
+  {
+    keys: ['t'],
+    label: 'T',
+    what: 'next theme',
+    overPages: true,
+    run: ({ themes }) => themes.next(),
+  },
+  {
+    keys: ['?', 'shift+?'],
+    label: '?',
+    what: 'this help',
+    overPages: true,
+    run: ({ store }) => toggleHelp(store),
+  },
   {
     keys: ['escape'],
     label: 'Esc',
     what: 'close, restore',
+    overPages: true,
     run: (context) => restoreScreen(context),
   },
 ];
@@ -149,6 +165,7 @@ export function listenToKeys(context: Context): void {
     const name = held + event.key.toLowerCase();
     const shortcut = kShortcuts.find(({ keys }) => keys.includes(name));
     if (shortcut === undefined) return;
+    if (context.store.state.covered && shortcut.overPages !== true) return;
     event.preventDefault();
     shortcut.run(context);
   });
@@ -193,15 +210,11 @@ function toggleHelp(store: Context['store']): void {
 }
 
 function restoreScreen({ store, layouts }: Context): void {
-  store.state.helpOpen = false;
-  store.state.scenarioEditor.open = false;
-  store.state.paletteOpen = false;
-  store.state.logPage.open = false;
-  store.state.scorePage.open = false;
-  store.state.calibrationPage.open = false;
-  store.state.missionPage.open = false;
-  store.state.sweepPage.open = false;
-  store.state.studyPage.open = false;
+  const { state } = store;
+  state.helpOpen = false;
+  state.paletteOpen = false;
+  state.connect.open = false;
+  for (const page of state.pages) page.open = false;
   store.change(
     'help',
     'launch',

@@ -34,7 +34,6 @@ export class Timeline implements View {
     this.track = new TimelineTrack(context);
     this.play = iconButton('play', 'Play or pause (space)', () => player.togglePlay());
     this.play.classList.add('play');
-    this.play.append(this.pauseIcon);
     this.play.replaceChildren(this.playIcon, this.pauseIcon);
     this.loop = iconButton('loop', 'Repeat from the start', () => player.toggleLoop());
     this.reverse = iconButton('reverse', 'Backwards or forwards (R)', () => player.reverse());
@@ -84,7 +83,7 @@ export class Timeline implements View {
   update(changed: ReadonlySet<Topic>): void {
     this.track.update(changed);
     if (!changed.has('playback') && !changed.has('run')) return;
-    const { playback, run } = this.context.store.state;
+    const { playback } = this.context.store.state;
     const playing = playback?.playing === true;
     this.playIcon.style.display = playing ? 'none' : '';
     this.pauseIcon.style.display = playing ? '' : 'none';
@@ -108,7 +107,7 @@ export class Timeline implements View {
     if (clear !== undefined) clear.disabled = (playback?.range ?? null) === null;
     setAttribute(this.loop, 'aria-pressed', playback?.loop === true ? 'true' : 'false');
     setAttribute(this.live, 'aria-pressed', playback?.live === true ? 'true' : 'false');
-    this.live.disabled = run?.status !== 'running' || playback === null;
+    this.live.disabled = playback?.flying !== true;
   }
 
   private showSpeed(speed: number): void {

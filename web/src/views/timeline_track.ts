@@ -247,15 +247,17 @@ export class TimelineTrack {
     }
   }
 
-  /** The tooltip's text about the faults at a time. */
-  private faultText(t_ns: number): string {
+  /** The tooltip's lines about the faults at a time of the clock. */
+  private faultText(clock_ns: number): string {
+    const { offset_ns } = this.context.store.state;
+    const t_ns = clock_ns - offset_ns;
     const slack_ns = this.slack_ns();
     const here = this.spans.spans.filter(
       ({ begin_ns, end_ns }) => t_ns >= begin_ns - slack_ns && t_ns <= end_ns + slack_ns,
     );
     const lines = here.slice(0, kMostFaults).map(({ kind, begin_ns, end_ns, frames }) => {
       const { label, hint } = faultMeaning(kind);
-      const when = `${formatTime(begin_ns)} to ${formatTime(end_ns)}`;
+      const when = `${formatTime(begin_ns + offset_ns)} to ${formatTime(end_ns + offset_ns)}`;
       const count = frames === 0 ? '' : `, ${frames} frame${frames === 1 ? '' : 's'}`;
       return `${label}, ${when}${count}: ${hint}`;
     });
@@ -291,7 +293,7 @@ export class TimelineTrack {
       const run_ns = t_ns - this.context.store.state.offset_ns;
       setText(
         this.tip,
-        formatTime(t_ns) + this.flightText(run_ns) + this.faultText(run_ns) + this.stateText(t_ns),
+        formatTime(t_ns) + this.flightText(run_ns) + this.faultText(t_ns) + this.stateText(t_ns),
       );
     });
     this.root.addEventListener('pointerleave', () => {

@@ -1,15 +1,20 @@
 import { describe, expect, it } from 'vitest';
+
 import { RestClient } from '../../src/connection/rest_client';
 import { StreamClient } from '../../src/connection/stream_client';
 import { Catalogue } from '../../src/store/catalogue';
 import { Notices } from '../../src/store/notices';
 import { Store } from '../../src/store/state';
-import { FakeSocket, FakeTimers } from '../support/fake_socket';
-import { unwatchedSession } from '../support/viewing';
 import { WatchedRun } from '../../src/store/watched_run';
+import { FakeSocket, FakeTimers } from '../support/fake_socket';
 import { sampleRun } from '../support/samples';
+import { unwatchedSession } from '../support/viewing';
 
-const document = { seed: 1, pacing: 'lockstep', estimators: [] };
+const document = {
+  seed: 1,
+  pacing: 'lockstep',
+  estimators: [],
+};
 const kScenario = {
   name: 'course',
   title: 'Course',
@@ -44,7 +49,7 @@ function catalogue(answers: Record<string, (body: string) => [number, unknown]>)
     return Promise.resolve(new Response(status === 204 ? null : JSON.stringify(body), { status }));
   });
   const subject = new Catalogue(store, rest, session, notices, later, () => 'key');
-  return { store, socket, subject, timers };
+  return { store, session, socket, subject, timers };
 }
 
 const reading = {
@@ -203,6 +208,41 @@ describe('Catalogue', () => {
     ]);
     await subject.readRuns();
     expect(store.state.notices).toHaveLength(2);
+  });
+
+  it('says that a watched flight ended although the stream told it first, and takes its results', async () => {
+    let runs = [sampleRun({ status: 'running' })];
+    const { store, session, socket, subject } = catalogue({ 'GET /runs': () => [200, { runs }] });
+    await subject.readRuns();
+    session.selectRun('r1');
+    socket.receive({ type: 'run', run: sampleRun({ frames: 7 }) });
+    expect(store.state.runs?.[0]?.status).toBe('completed');
+    const results = [
+      { estimator: 'feature', outcome: 'LOST', position_rmse_m: 2, position_rmse_percent: 1 },
+    ];
+    runs = [sampleRun({ results, tags: ['wind'], note: 'again' })];
+    store.take();
+    await subject.readRuns();
+    expect(store.state.notices.map(({ text }) => text)).toEqual([
+      'The course: the flight is complete.',
+    ]);
+    expect(store.state.run).toEqual({ ...runs[0], frames: 7 });
+    expect(store.take().has('run')).toBe(true);
+    await subject.readRuns();
+    expect(store.state.notices).toHaveLength(1);
+    expect(store.take().has('run')).toBe(false);
+  });
+
+  it('says that a flight of this page ended that no list has shown before', async () => {
+    const { store, subject } = catalogue({
+      ...reading,
+      'POST /runs': () => [201, sampleRun({ status: 'running' })],
+      'GET /runs': () => [200, { runs: [sampleRun(), sampleRun({ id: 'of another' })] }],
+    });
+    await subject.readScenarios();
+    await subject.launch();
+    await subject.readRuns();
+    expect(store.state.notices).toHaveLength(1);
   });
 
   it('reports a run that cannot be deleted', async () => {

@@ -1,5 +1,7 @@
 import { describe, expect, it } from 'vitest';
+
 import { layoutText } from '../../src/store/layouts/layout_text';
+
 import type { LayoutNode } from '../../src/store/layouts/layout_tree';
 import { usualChoices } from '../../src/store/link_choices';
 import type { LinkedRun, Permalink } from '../../src/store/permalink';
@@ -78,7 +80,18 @@ describe('permalink', () => {
   it('has several runs with their offsets, and the main one', () => {
     const runs = [...alone('r1'), ...alone('r2', { offset_ns: -1_500_000_000 })];
     const link = { ...kUsual, runs, main: 'r2', t_ns: 0 };
-    expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.500&main=r2&t=0.000');
+    expect(formatPermalink(link)).toBe('#run=r1&run=r2%40-1.5&main=r2&t=0');
+    expect(read(formatPermalink(link))).toEqual(link);
+  });
+
+  it('has times to the nanosecond: a frame is not one before', () => {
+    const choices = usualChoices();
+    choices.clock = { range: { begin_ns: 32_258_065, end_ns: 64_516_129 }, speed: 1, loop: false };
+    const runs = [...alone('r1'), ...alone('r2', { offset_ns: 1 })];
+    const link = { ...kUsual, runs, t_ns: 86_399_967_741_935, choices };
+    expect(formatPermalink(link)).toBe(
+      '#run=r1&run=r2%400.000000001&range=0.032258065%2C0.064516129&t=86399.967741935',
+    );
     expect(read(formatPermalink(link))).toEqual(link);
   });
 

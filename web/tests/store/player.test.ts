@@ -1,4 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+
 import { playbackMessage } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
@@ -38,6 +39,28 @@ describe('Player', () => {
     expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 5e9 });
     expect(viewing.player.seekTarget_ns(11.01e9)).toBe(11e9);
     expect(viewing.player.seekTarget_ns(5e9)).toBe(5e9);
+  });
+
+  it('goes to the end of the clock, not of the main run', () => {
+    viewing.watch();
+    viewing.session.addRun('r2');
+    viewing.socket.receive(playbackMessage({ end_ns: 2.5e9 }));
+    viewing.player.seekEdge('end');
+    expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 2.5e9 });
+    viewing.session.setOffset('r1', 0.4e9);
+    viewing.player.seekEdge('begin');
+    expect(viewing.socket.last()).toMatchObject({ type: 'seek', t_ns: 0 });
+    expect(viewing.player.seekTarget_ns(2.5e9)).toBe(2.5e9);
+  });
+
+  it('follows any run that flies', () => {
+    viewing.watch();
+    const sent = viewing.socket.sent.length;
+    viewing.player.goLive();
+    expect(viewing.socket.sent).toHaveLength(sent);
+    viewing.socket.receive(playbackMessage({ flying: true }));
+    viewing.player.goLive();
+    expect(viewing.socket.last().type).toBe('live');
   });
 
   it('keeps its direction when the speed changes', () => {

@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+
 import { rateBadge } from '../../src/store/pictures/picture_rates';
-import { samplePlayback, playbackMessage, sampleRun, sampleStatus } from '../support/samples';
+import { playbackMessage, samplePlayback, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
 let viewing: Viewing;
@@ -135,6 +136,63 @@ describe('Session', () => {
     viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
     viewing.socket.receive(playbackMessage({ live: true, t_ns: 1.5e9 }));
     expect(viewing.socket.types()).not.toContain('seek');
+  });
+
+  /** Of an ended run r1, watched first, and of r2. */
+  const bothRuns = (change: Parameters<typeof samplePlayback>[0]) => {
+    const both = playbackMessage(change);
+    return { ...both, runs: { ...both.runs, ...playbackMessage(change, 'r2').runs } };
+  };
+
+  it.each([
+    ['stays live', true, { type: 'live' }],
+    ['keeps the place', false, { type: 'seek', t_ns: 1.2e9 }],
+  ])(
+    '%s in a comparison once all runs are there again, even if the connection is lost twice',
+    (_, flying, command) => {
+      viewing.watch();
+      viewing.session.addRun('r2');
+      viewing.socket.receive(bothRuns({ t_ns: 1.2e9, live: true, playing: true, flying: true }));
+      for (let lost = 0; lost < 2; lost += 1) {
+        viewing.socket.lose();
+        viewing.timers.fire();
+        viewing.socket.hello();
+        viewing.socket.receive(playbackMessage());
+        expect(viewing.socket.types()).not.toContain('live');
+      }
+      const { socket } = viewing;
+      const sent = socket.sent.length;
+      socket.receive(bothRuns({ flying }));
+      expect(socket.sent.slice(sent)).toMatchObject([command]);
+      socket.receive(bothRuns({ flying }));
+      expect(socket.sent).toHaveLength(sent + 1);
+    },
+  );
+
+  it('goes to the instant of a second link once the runs that it adds are there', () => {
+    viewing.watch();
+    const { session, socket } = viewing;
+    const sent = socket.sent.length;
+    const settings = { range: null, speed: 2, loop: false };
+    const added = { id: 'r2', offset_ns: 9e9 };
+    session.showRuns([{ id: 'r1', offset_ns: 0 }, added], null, 9.5e9, settings);
+    socket.receive(playbackMessage());
+    expect(socket.sent.slice(sent)).toMatchObject([{ type: 'watch', run: 'r2' }]);
+    socket.receive(bothRuns({}));
+    expect(socket.sent.slice(sent + 1)).toMatchObject([
+      { type: 'speed', value: 2 },
+      { type: 'seek', t_ns: 9.5e9 },
+    ]);
+  });
+
+  it('moves the runs of a second link before it goes to its instant', () => {
+    viewing.watch();
+    const sent = viewing.socket.sent.length;
+    viewing.session.showRuns([{ id: 'r1', offset_ns: 9e9 }], null, 9.5e9);
+    expect(viewing.socket.sent.slice(sent)).toMatchObject([
+      { type: 'watch', run: 'r1', offset_ns: 9e9 },
+      { type: 'seek', t_ns: 9.5e9 },
+    ]);
   });
 
   it('keeps the status of the estimators until another run is watched', () => {

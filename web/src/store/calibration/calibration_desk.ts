@@ -9,7 +9,8 @@ import type { Store } from '../state';
 import type { CalibrationForm } from './calibration_form';
 import { lensOf, requestOf } from './calibration_form';
 import type { CalibrationPage } from './calibration_page';
-import { calibratedSection } from './calibration_results';
+import { chooseFirst } from './calibration_page';
+import { calibratedSection, leftOutBy } from './calibration_results';
 import type { Later } from './image_sender';
 import { ImageSender } from './image_sender';
 
@@ -30,6 +31,10 @@ export class CalibrationDesk {
   /** Increases when a session is begun or left: answers about the one before are dropped. */
   private generation = 0;
   private polling = false;
+  /** Ends when the last estimate that was asked for is agreed to or refused. */
+  private asking: Promise<void> = Promise.resolve();
+  /** What the last estimate that the server agreed to leaves out, until the session says so. */
+  private agreed: ReadonlySet<number> | null = null;
   private readonly sender: ImageSender;
 
   constructor(
@@ -115,24 +120,27 @@ export class CalibrationDesk {
     const { session } = this.page;
     if (session === null) return;
     await this.request(async () => {
-      if (control.clear === true) this.page.selected = null;
+      if (control.clear === true) {
+        this.agreed = null;
+        Object.assign(this.page, { selected: null, leftOut: null });
+      }
       this.show(await this.client.control(session.id, control));
     });
   }
 
   /** Estimates the camera with the lens of the form. */
   async solve(): Promise<void> {
-    const { session } = this.page;
-    if (session === null) return;
-    await this.solveWithout(session.views.filter((view) => view.left_out).map(({ view }) => view));
+    const { session, leftOut } = this.page;
+    if (session !== null) await this.solveWithout(leftOut ?? leftOutBy(session));
   }
 
   /** Leaves a view out of the estimate, or takes it in again. */
   async toggleView(view: number): Promise<void> {
-    const { session } = this.page;
+    const { session, leftOut } = this.page;
     if (session === null) return;
-    const left = session.views.filter((one) => one.left_out !== (one.view === view));
-    await this.solveWithout(left.map((one) => one.view));
+    const left = new Set(leftOut ?? leftOutBy(session));
+    if (!left.delete(view)) left.add(view);
+    await this.solveWithout(left);
   }
 
   async select(view: number | null): Promise<void> {
@@ -166,7 +174,9 @@ export class CalibrationDesk {
     });
   }
 
-  /** The scenario of the launcher, with its changes, uses a saved calibration in its next flight. */
+  /**
+   * The scenario of the launcher, with its changes, uses a saved calibration in its next flight.
+   */
   useInScenario(file: string, name: string): void {
     const { scenarioDocument, scenarioEdits, scenarioName } = this.store.state;
     if (scenarioDocument === null) {
@@ -184,8 +194,14 @@ export class CalibrationDesk {
     this.notices.info(`The next flight of ${scenarioName ?? 'the scenario'} uses ${name}.`);
   }
 
-  fileUrl(name: string, format: string): string {
-    return this.client.fileUrl(name, format);
+  /** A saved calibration for another program; null, with the reason shown, if there is none. */
+  async file(name: string, format: string): Promise<Blob | null> {
+    try {
+      return await this.client.file(name, format);
+    } catch (error) {
+      this.notices.error(`${name} cannot be downloaded: ${errorText(error)}`);
+      return null;
+    }
   }
 
   imageUrl(image: number): string {
@@ -223,12 +239,31 @@ export class CalibrationDesk {
     this.changed();
   }
 
-  private async solveWithout(left: number[]): Promise<void> {
-    const { session, form } = this.page;
-    if (session === null) return;
-    await this.request(async () => {
-      this.show(await this.client.solve(session.id, lensOf(form), left));
+  /** One request after the other: the last one counts. */
+  private async solveWithout(left: ReadonlySet<number>): Promise<void> {
+    const { page, generation } = this;
+    page.leftOut = left;
+    this.changed();
+    this.asking = this.asking.then(async () => {
+      if (this.generation === generation) await this.request(() => this.askWithout(left));
     });
+    await this.asking;
+  }
+
+  private async askWithout(left: ReadonlySet<number>): Promise<void> {
+    const { page, generation } = this;
+    const { session, form } = page;
+    if (session === null) return;
+    try {
+      const views = [...left].sort((a, b) => a - b);
+      const answer = await this.client.solve(session.id, lensOf(form), views);
+      if (this.generation !== generation) return;
+      this.agreed = left;
+      this.show(answer);
+    } catch (error) {
+      if (this.generation === generation && page.leftOut === left) page.leftOut = this.agreed;
+      throw error;
+    }
   }
 
   private poll(): void {
@@ -298,15 +333,22 @@ export class CalibrationDesk {
   }
 
   private show(session: CalibrationSession): void {
-    this.page.session = session;
+    const { page, agreed } = this;
+    page.session = session;
+    if (agreed !== null && sameViews(agreed, leftOutBy(session))) {
+      this.agreed = null;
+      if (page.leftOut === agreed) page.leftOut = null;
+    }
     this.changed();
   }
 
   private forget(): void {
     this.generation += 1;
+    this.agreed = null;
     Object.assign(this.page, {
       session: null,
       solution: null,
+      leftOut: null,
       selected: null,
       detail: null,
       sending: null,
@@ -337,6 +379,10 @@ export class CalibrationDesk {
   }
 }
 
+function sameViews(some: ReadonlySet<number>, others: ReadonlySet<number>): boolean {
+  return some.size === others.size && [...some].every((view) => others.has(view));
+}
+
 /** Names of a scenario's cameras, the main one first. */
 export function camerasOf(document: JsonObject): string[] {
   const several = document['cameras'];
@@ -348,16 +394,4 @@ export function camerasOf(document: JsonObject): string[] {
         : undefined;
     return typeof name === 'string' ? name : 'camera0';
   });
-}
-
-function chooseFirst({ sources, form }: CalibrationPage): void {
-  const lists = {
-    folder: sources?.folders,
-    recording: sources?.recordings,
-    camera: sources?.cameras,
-  };
-  for (const [kind, list] of Object.entries(lists)) {
-    const names = form.names as Record<string, string>;
-    if (!list?.some(({ name }) => name === names[kind])) names[kind] = list?.[0]?.name ?? '';
-  }
 }

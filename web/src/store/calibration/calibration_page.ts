@@ -23,6 +23,8 @@ export interface CalibrationPage {
   error: string | null;
   session: CalibrationSession | null;
   solution: CalibrationSolution | null;
+  /** Views without which an estimate was asked for; null = those that the session leaves out. */
+  leftOut: ReadonlySet<number> | null;
   /** The view shown beside the newest image; null = the last one. */
   selected: number | null;
   detail: ViewDetail | null;
@@ -44,9 +46,23 @@ export function initialCalibrationPage(): CalibrationPage {
     error: null,
     session: null,
     solution: null,
+    leftOut: null,
     selected: null,
     detail: null,
     name: 'camera',
     sending: null,
   };
+}
+
+/** Where a list has no longer what was chosen of it. */
+export function chooseFirst({ sources, form }: CalibrationPage): void {
+  const lists = {
+    folder: sources?.folders,
+    recording: sources?.recordings,
+    camera: sources?.cameras,
+  };
+  for (const [kind, list] of Object.entries(lists)) {
+    const names = form.names as Record<string, string>;
+    if (!list?.some(({ name }) => name === names[kind])) names[kind] = list?.[0]?.name ?? '';
+  }
 }

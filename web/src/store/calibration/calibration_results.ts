@@ -6,6 +6,7 @@ import type {
   Intrinsics,
 } from '../../protocol/calibration_types';
 import type { Json, JsonObject } from '../../protocol/rest_types';
+import type { CalibrationPage } from './calibration_page';
 
 export interface ParameterRow {
   name: string;
@@ -64,13 +65,20 @@ export interface ViewRow {
   outlier: boolean;
 }
 
+/** Views that a session leaves out of its estimate. */
+export function leftOutBy({ views }: CalibrationSession): Set<number> {
+  return new Set(views.filter(({ left_out }) => left_out).map(({ view }) => view));
+}
+
 /** All views of the session, with the residuals of those in the estimate. */
 export function viewRows(
-  session: CalibrationSession,
-  solution: CalibrationSolution | null,
+  page: Pick<CalibrationPage, 'session' | 'solution' | 'leftOut'>,
 ): ViewRow[] {
+  const { session, solution } = page;
+  if (session === null) return [];
+  const leftOut = page.leftOut ?? leftOutBy(session);
   const solved = new Map((solution?.views ?? []).map((view) => [view.view, view]));
-  return session.views.map(({ view, name, left_out }) => {
+  return session.views.map(({ view, name }) => {
     const found = solved.get(view);
     return {
       view,
@@ -78,7 +86,7 @@ export function viewRows(
       rms_px: found?.rms_px ?? null,
       max_px: found?.max_px ?? null,
       tilt_deg: found?.tilt_deg ?? null,
-      leftOut: left_out,
+      leftOut: leftOut.has(view),
       outlier: found?.outlier ?? false,
     };
   });

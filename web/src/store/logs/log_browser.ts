@@ -63,6 +63,8 @@ export function initialLogPage(): LogPage {
 export class LogBrowser {
   private reading = new AbortController();
   private sending: AbortController | null = null;
+  /** Logs that wait for the one that is being uploaded. */
+  private unsent: UploadSet<File>[] = [];
   /** Number of the latest request for the list. */
   private listing = 0;
 
@@ -148,18 +150,27 @@ export class LogBrowser {
     this.changed();
   }
 
-  /** Uploads logs one after another, or a mapping with its CSV files as one log. */
+  /**
+   * Uploads logs one after another, or a mapping with its CSV files as one log. Those chosen during
+   * an upload come after it; an error ends it for all.
+   */
   async send(files: readonly File[]): Promise<void> {
     const { page } = this;
-    if (page.upload !== null || files.length === 0) return;
+    if (files.length === 0) return;
     const sets = uploadSets(files);
     page.uploadError = typeof sets === 'string' ? sets : null;
     this.changed();
     if (typeof sets === 'string') return;
-    for (const set of sets) {
-      await this.sendOne(set);
-      if (page.uploadError !== null) return;
-    }
+    this.unsent.push(...sets);
+    await this.sendNext();
+  }
+
+  private async sendNext(): Promise<void> {
+    if (this.page.upload !== null) return;
+    const next = this.unsent.shift();
+    if (next === undefined) return;
+    await this.sendOne(next);
+    await this.sendNext();
   }
 
   private async sendOne(files: UploadSet<File>): Promise<void> {
@@ -181,7 +192,9 @@ export class LogBrowser {
         this.sending.signal,
       );
     } catch (error) {
-      page.uploadError = `${name}: ${errorText(error)}`;
+      const left = this.unsent.splice(0).map(([file]) => file.name);
+      const others = left.length === 0 ? '' : `\nNot uploaded: ${left.join(', ')}`;
+      page.uploadError = `${name}: ${errorText(error)}${others}`;
       return;
     } finally {
       page.upload = null;
@@ -209,7 +222,10 @@ export class LogBrowser {
         this.page.flight = newLogFlight(this.page.flight.scenario);
       }
     } catch (error) {
+      await this.readList();
       this.page.listError = errorText(error);
+      this.changed();
+      return;
     }
     await this.readList();
   }

@@ -63,8 +63,8 @@ export interface StateLane {
   hue: CurveHue;
   /** As they are now, in times of the run. */
   spans: () => readonly StateSpan[];
-  /** Seconds of the clock at the beginning of the run. */
-  offset_s: number;
+  /** Seconds of the clock at the beginning of the run, as it is now. */
+  offset_s: () => number;
 }
 
 export const kAxisLabels: Readonly<Record<Axis, string>> = {
@@ -164,7 +164,7 @@ function stateLanes(state: State): StateLane[] {
       name: track.label,
       hue: hueOf(track),
       spans: () => spansOf(track),
-      offset_s: track.run.offset_s,
+      offset_s: () => track.run.offset_s,
     }));
 }
 

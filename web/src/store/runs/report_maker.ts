@@ -5,8 +5,6 @@ import { isActive } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
 import type { Store } from '../state';
 
-export const kMostReportRuns = 16;
-
 export interface ReportRest {
   report: (runs: readonly string[], alignment: string) => Promise<Blob>;
 }
@@ -58,12 +56,9 @@ export class ReportMaker {
 
   private refusal(runs: readonly string[]): string | null {
     if (this.making) return 'A report is being made already.';
-    if (runs.length === 0)
-      return 'None of the shown runs has ended: only ended runs can be reported.';
-    if (runs.length > kMostReportRuns) {
-      return `${runs.length} runs are shown: a report takes ${kMostReportRuns} at most.`;
-    }
-    return null;
+    return runs.length === 0
+      ? 'None of the shown runs has ended: only ended runs can be reported.'
+      : null;
   }
 
   private set(making: boolean): void {

@@ -43,11 +43,13 @@ export class ScoreDesk {
   async open(): Promise<void> {
     this.page.open = true;
     this.changed();
-    await this.readLists();
+    // What was chosen when the page was closed is not scored yet.
+    const scoring = this.scoring.signal.aborted ? this.score() : null;
+    await Promise.all([this.readLists(), scoring]);
   }
 
   close(): void {
-    this.scoring.abort();
+    if (this.page.working) this.scoring.abort();
     this.page.working = false;
     this.page.open = false;
     this.changed();
@@ -94,7 +96,9 @@ export class ScoreDesk {
     await this.score();
   }
 
-  /** Uploads trajectories and flight logs; each is then scored, the first without a truth as such. */
+  /**
+   * Uploads trajectories and flight logs; each is then scored, the first without a truth as such.
+   */
   async send(files: readonly File[]): Promise<void> {
     const { page } = this;
     try {
@@ -142,6 +146,8 @@ export class ScoreDesk {
       if (page.truth === name) page.truth = null;
     } catch (error) {
       page.error = errorText(error);
+      await this.readLists();
+      return;
     }
     await this.readLists();
     await this.score();

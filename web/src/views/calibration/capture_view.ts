@@ -114,8 +114,7 @@ export class CaptureView {
     this.bars.show(session?.coverage ?? []);
     this.newest.show(session?.newest ? this.content(session, session.newest) : null);
     this.view.show(this.shownView(page));
-    const rows = session === null ? [] : viewRows(session, page.solution);
-    this.plot.show(rows, page.solution?.rms_px ?? null, page.selected);
+    this.plot.show(viewRows(page), page.solution?.rms_px ?? null, page.selected);
   }
 
   private updateTools({ session, sending, busy }: CalibrationPage): void {

@@ -54,7 +54,8 @@ export class ResultView {
   }
 
   update(): void {
-    const { session, solution, selected, busy, name } = this.context.store.state.calibrationPage;
+    const page = this.context.store.state.calibrationPage;
+    const { session, solution, selected, busy, name } = page;
     this.root.hidden = session === null;
     if (session === null) return;
     this.estimate.disabled =
@@ -66,8 +67,7 @@ export class ResultView {
     rebuild(this.warnings, JSON.stringify(solution?.warnings ?? []), () =>
       (solution?.warnings ?? []).map((text) => h('li', {}, text)),
     );
-    const rows = viewRows(session, solution);
-    this.drawViews(rows, selected);
+    this.drawViews(viewRows(page), selected);
     if (this.name.value !== name) this.name.value = name;
     this.updateSaving();
   }
@@ -132,6 +132,10 @@ export class ResultView {
       ),
       h('tbody', {}, ...rows.map((row) => this.viewRow(row, row.view === selected))),
     ]);
+    // A refused request leaves the rows as they were, but the viewer has changed the box.
+    this.views.querySelectorAll('input').forEach((box, i) => {
+      box.checked = rows[i]?.leftOut === false;
+    });
   }
 
   private viewRow(row: ViewRow, selected: boolean): HTMLElement {
@@ -140,7 +144,6 @@ export class ResultView {
       'aria-label': `Use view ${row.view + 1}`,
       onchange: () => void this.context.calibration.toggleView(row.view),
     });
-    box.checked = !row.leftOut;
     const figure = (value: number | null, digits: number) =>
       h('td', {}, value === null ? kNothing : formatNumber(value, digits));
     return h(

@@ -3,6 +3,7 @@ import { formatNumber } from '../../store/format';
 import type { SavedCalibration } from '../../protocol/calibration_types';
 import { kCameraFormats } from '../../protocol/calibration_types';
 import { h, rebuild, setText } from '../dom';
+import { download } from '../download';
 import { icon } from '../icons';
 import type { Context } from '../view';
 
@@ -50,20 +51,16 @@ export class SavedList {
   private entry(saved: SavedCalibration): HTMLElement {
     const { calibration } = this.context;
     const { name, file } = saved;
-    const download = h(
+    const choice = h(
       'select',
       { 'aria-label': `Download ${name}`, title: 'For other programs' },
       h('option', { value: '' }, 'Download'),
       ...kCameraFormats.map((format) => h('option', { value: format }, kFormats[format])),
     );
-    download.addEventListener('change', () => {
-      const format = download.value;
-      download.value = '';
-      const link = h('a', {
-        href: calibration.fileUrl(name, format),
-        download: fileName(name, format),
-      });
-      link.click();
+    choice.addEventListener('change', () => {
+      const format = choice.value;
+      choice.value = '';
+      void this.save(name, format);
     });
     return h(
       'li',
@@ -82,7 +79,7 @@ export class SavedList {
           },
           'Use in next flight',
         ),
-        download,
+        choice,
         h(
           'button',
           {
@@ -95,6 +92,11 @@ export class SavedList {
         ),
       ),
     );
+  }
+
+  private async save(name: string, format: string): Promise<void> {
+    const file = await this.context.calibration.file(name, format);
+    if (file !== null) download(fileName(name, format), file);
   }
 }
 

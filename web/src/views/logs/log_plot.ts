@@ -6,6 +6,7 @@ import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
 import { paint } from '../paint';
 import { paddedRange } from '../../store/plots/plot_range';
+import { axisNumbers } from '../plots/axis_numbers';
 
 export interface LogPlotOptions {
   key: string;
@@ -126,9 +127,9 @@ export class LogPlot {
       },
       axes: [
         timeLabels
-          ? { ...axis, size: 20, gap: 2, space: 50 }
+          ? { ...axis, size: 20, gap: 2, values: axisNumbers, space: 50 }
           : { ...axis, size: 0, values: () => [], space: 50 },
-        { ...axis, size: 46, gap: 3, space: 18 },
+        { ...axis, size: 46, gap: 3, values: axisNumbers, space: 18 },
       ],
       series: [
         {},

@@ -97,12 +97,14 @@ export class DriftPlot {
     const y = (at: number) => kTopMargin_px + (1 - at / value) * height;
     paintAxes(pen, x, y, this.ends(), width, height);
     for (const { hue, lengths_m, values } of this.spec.curves) {
-      const { colour, width_px: line_px } = curveStyle(hue);
+      const { colour, width_px: line_px, dash } = curveStyle(hue);
       pen.strokeStyle = pen.fillStyle = paint(colour);
       pen.lineWidth = line_px;
+      pen.setLineDash(dash);
       pen.beginPath();
       lengths_m.forEach((at_m, i) => pen.lineTo(x(at_m), y(values[i] ?? NaN)));
       pen.stroke();
+      pen.setLineDash([]);
       lengths_m.forEach((at_m, i) => {
         pen.beginPath();
         pen.arc(x(at_m), y(values[i] ?? NaN), kPoint_px, 0, 2 * Math.PI);

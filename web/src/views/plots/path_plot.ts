@@ -58,6 +58,8 @@ export class PathPlot {
   private marks: readonly PathMark[] = [];
   /** null = everything. */
   private chosen: PathFrame | null = null;
+  /** What the tracks belong to. */
+  private subject = '';
 
   /** @param onSeek  to a time of the clock [s] */
   constructor(
@@ -92,11 +94,18 @@ export class PathPlot {
       const [x, y, t] = [table.column(across), table.column(up), table.column('t_ns')];
       return [{ name, hue: hueOf(track), x, y, t, t_scale_s: 1e-9, t_offset_s: run.offset_s }];
     });
+    this.setSubject(state.watched.map(({ id }) => id).join(' '));
     this.show(paths, this.marksOf(state));
   }
 
   moveMarks(state: State): void {
     this.show(this.paths, this.marksOf(state));
+  }
+
+  /** Of other runs, or with another truth, everything is shown first. */
+  setSubject(subject: string): void {
+    if (subject !== this.subject) this.chosen = null;
+    this.subject = subject;
   }
 
   show(paths: readonly Path[], marks: readonly PathMark[]): void {
@@ -185,21 +194,23 @@ export class PathPlot {
 
   private steer(): void {
     const { area } = this.plot;
-    let grabbed: { at: [number, number]; moved: boolean } | null = null;
+    /** By the pointer that moves the plot; others do not. */
+    let grabbed: { id: number; at: [number, number]; moved: boolean } | null = null;
     const at = (event: MouseEvent): [number, number] => {
       const box = area.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
     area.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
-      grabbed = { at: at(event), moved: false };
+      if (grabbed !== null && area.hasPointerCapture(grabbed.id)) return;
+      grabbed = { id: event.pointerId, at: at(event), moved: false };
       area.setPointerCapture(event.pointerId);
     });
     area.addEventListener('pointermove', (event) => {
       const here = at(event);
       const [x, y] = toMetres(this.frame(), this.plot.size(), here);
       setText(this.readout, `${tickText(x, 0.1)} ${tickText(y, 0.1)}`);
-      if (grabbed === null) return;
+      if (grabbed?.id !== event.pointerId) return;
       const [dx, dy] = [here[0] - grabbed.at[0], here[1] - grabbed.at[1]];
       if (!grabbed.moved && Math.hypot(dx, dy) < kClick_px) return;
       const { centre_m, m_per_px } = this.frame();
@@ -207,14 +218,17 @@ export class PathPlot {
         centre_m: [centre_m[0] - dx * m_per_px, centre_m[1] + dy * m_per_px],
         m_per_px,
       };
-      grabbed = { at: here, moved: true };
+      grabbed = { id: event.pointerId, at: here, moved: true };
       this.repaint();
     });
     area.addEventListener('pointerup', (event) => {
-      if (grabbed?.moved === false) this.seekNear(at(event));
+      if (grabbed?.id !== event.pointerId) return;
+      if (!grabbed.moved) this.seekNear(at(event));
       grabbed = null;
     });
-    area.addEventListener('pointercancel', () => (grabbed = null));
+    area.addEventListener('pointercancel', ({ pointerId }) => {
+      if (grabbed?.id === pointerId) grabbed = null;
+    });
     area.addEventListener('pointerleave', () => setText(this.readout, ''));
     area.addEventListener('dblclick', () => {
       this.chosen = null;

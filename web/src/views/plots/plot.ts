@@ -7,12 +7,12 @@ import { formatNumber, formatTime } from '../../store/format';
 import type { Polyline } from '../../store/plots/curve';
 import { valueAt } from '../../store/plots/curve';
 import { CurveWindow } from '../../store/plots/curve_window';
-import { tickText } from '../../store/plots/path_frame';
 import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import { curveExtent, sharedExtent } from '../../store/plots/shared_extent';
 import { spanAt, stateName } from '../../store/state_spans';
 import type { Span } from '../../store/time_window';
+import { axisNumbers } from './axis_numbers';
 import { BeyondNote } from './beyond_note';
 import { paintCurves } from './curve_painter';
 import { plotTip } from './plot_tip';
@@ -198,7 +198,7 @@ export class Plot {
     ctx.save();
     lanes.forEach(({ spans, hue, offset_s }, i) => {
       const xOf = (t_ns: number) =>
-        bbox.left + ((t_ns / 1e9 + offset_s - begin_s) / (end_s - begin_s)) * bbox.width;
+        bbox.left + ((t_ns / 1e9 + offset_s() - begin_s) / (end_s - begin_s)) * bbox.width;
       const top = Math.round(bbox.top + bbox.height + kLanesGap_px * ratio + i * height);
       const box = {
         left: bbox.left,
@@ -266,7 +266,7 @@ export class Plot {
   /** Of the estimators that do not track at a time. */
   private unusualStates(t_s: number): string[] {
     return (this.spec.lanes ?? []).flatMap(({ name, spans, offset_s }) => {
-      const state = spanAt(spans(), (t_s - offset_s) * 1e9)?.state ?? 'TRACKING';
+      const state = spanAt(spans(), (t_s - offset_s()) * 1e9)?.state ?? 'TRACKING';
       return state === 'TRACKING' ? [] : `${name}: ${stateName(state)}`;
     });
   }
@@ -293,6 +293,7 @@ export class Plot {
       stroke: () => paint('var(--muted)'),
       font: kFont,
       grid: { stroke: () => paint('var(--grid)'), width: 1 },
+      ticks: { show: false },
     };
     return {
       width: 200,
@@ -311,16 +312,9 @@ export class Plot {
       },
       axes: [
         timeLabels
-          ? { ...axis, size: 20 + lanes, gap: 2 + lanes, ticks: { show: false }, space: 44 }
-          : { ...axis, size: lanes, ticks: { show: false }, values: () => [], space: 44 },
-        {
-          ...axis,
-          size: 40,
-          gap: 3,
-          ticks: { show: false },
-          space: 20,
-          values: (_, splits, _axis, _space, step) => splits.map((value) => tickText(value, step)),
-        },
+          ? { ...axis, size: 20 + lanes, gap: 2 + lanes, values: axisNumbers, space: 44 }
+          : { ...axis, size: lanes, values: () => [], space: 44 },
+        { ...axis, size: 40, gap: 3, values: axisNumbers, space: 20 },
       ],
       // uPlot draws the axes; the curves are drawn over them.
       series: [{}, { paths: () => null, points: { show: false } }],

@@ -78,6 +78,8 @@ export class PlotsPanel implements View {
   private width_px = 0;
   private drawn_ms = -Infinity;
   private timer = 0;
+  /** Only a panel on the screen is updated. */
+  private hidden = true;
   /** Time under the mouse. */
   private hovered_s: number | null = null;
   /** Time of the clock when it was drawn last. */
@@ -110,6 +112,7 @@ export class PlotsPanel implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
+    this.hidden = false;
     if (changed.has('run') || changed.has('rows') || changed.has('sensors')) this.drawSoon();
     if (changed.has('plots') || changed.has('metrics')) this.drawSoon();
     if (changed.has('run') || changed.has('estimators') || changed.has('log')) {
@@ -126,6 +129,13 @@ export class PlotsPanel implements View {
   }
 
   onHidden(): void {
+    this.hidden = true;
+    window.clearTimeout(this.timer);
+    this.timer = 0;
+    this.hideSensors();
+  }
+
+  private hideSensors(): void {
     if (this.only === null) this.context.sensors.hide();
   }
 
@@ -135,7 +145,7 @@ export class PlotsPanel implements View {
   }
 
   private drawSoon(): void {
-    if (this.timer !== 0) return;
+    if (this.hidden || this.timer !== 0) return;
     const wait_ms = Math.max(0, this.drawn_ms + kRedraw_ms - performance.now());
     this.timer = window.setTimeout(() => {
       this.timer = 0;
@@ -149,7 +159,7 @@ export class PlotsPanel implements View {
     if (this.group === 'sensors' && state.runId !== null) {
       this.context.sensors.show(state.runId, this.context.plotTime.part_s);
     } else {
-      this.onHidden();
+      this.hideSensors();
     }
     if (this.key !== this.wantedKey()) this.build();
     this.drawTabs();

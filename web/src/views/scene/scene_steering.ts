@@ -28,15 +28,17 @@ export function steerScene(context: Context, area: HTMLElement): void {
 }
 
 function steerByPointer({ scene, store }: Context, area: HTMLElement): void {
-  let last: { x: number; y: number } | null = null;
+  /** Where the pointer that steers was; others do nothing. */
+  let last: { id: number; x: number; y: number } | null = null;
   area.addEventListener('pointerdown', (event) => {
     const onTool = event.target instanceof Element && event.target.closest('.scene-sheet') !== null;
     if (event.button !== 0 || onTool) return;
-    last = { x: event.clientX, y: event.clientY };
+    if (last !== null && area.hasPointerCapture(last.id)) return;
+    last = { id: event.pointerId, x: event.clientX, y: event.clientY };
     area.setPointerCapture(event.pointerId);
   });
   area.addEventListener('pointermove', (event) => {
-    if (last === null) return;
+    if (last?.id !== event.pointerId) return;
     const { mode, orbits } = store.state.scene;
     const { azimuth_deg, elevation_deg } = orbits[mode];
     const [x, y] = [event.clientX - last.x, event.clientY - last.y];
@@ -46,10 +48,10 @@ function steerByPointer({ scene, store }: Context, area: HTMLElement): void {
       azimuth_deg: azimuth_deg + x * (looks ? -kLook_deg_px : kTurn_deg_px),
       elevation_deg: elevation_deg + y * (looks ? kLook_deg_px : kTurn_deg_px),
     });
-    last = { x: event.clientX, y: event.clientY };
+    last = { id: event.pointerId, x: event.clientX, y: event.clientY };
   });
-  const release = () => {
-    last = null;
+  const release = ({ pointerId }: PointerEvent) => {
+    if (last?.id === pointerId) last = null;
   };
   area.addEventListener('pointerup', release);
   area.addEventListener('pointercancel', release);
@@ -101,7 +103,8 @@ function steerByKeys({ scene, store }: Context, area: HTMLElement): void {
     fast = event.shiftKey;
     const typing = event.target instanceof Element && event.target.matches('input,select,textarea');
     const other = event.ctrlKey || event.metaKey || event.altKey || typing;
-    if (other || !(key in kMoves) || store.state.scene.mode !== 'free' || !area.isConnected) return;
+    const covered = !area.isConnected || area.closest('[inert]') !== null;
+    if (other || covered || !(key in kMoves) || store.state.scene.mode !== 'free') return;
     event.preventDefault();
     if (held.has(key)) return;
     held.add(key);

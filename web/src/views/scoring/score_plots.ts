@@ -180,6 +180,7 @@ export class ScorePlots {
     for (const path of this.paths) {
       const { across, up } = path.axes;
       path.tracks = series === null ? [] : scorePaths(series, mode, across, up);
+      path.plot.setSubject(series?.truth.name ?? '');
       path.plot.show(path.tracks, []);
     }
   }

@@ -1,6 +1,8 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+
 import { CalibrationClient } from '../../../src/connection/calibration_client';
 import { RestClient } from '../../../src/connection/rest_client';
+
 import type { CalibrationSession } from '../../../src/protocol/calibration_types';
 import { CalibrationDesk, camerasOf } from '../../../src/store/calibration/calibration_desk';
 import { Notices } from '../../../src/store/notices';
@@ -21,12 +23,14 @@ let later: (() => void)[];
 /** Of the launcher's scenario, which wait for a pause. */
 let checks: (() => void)[];
 let refusals: number;
+/** Estimates of fewer views are refused. */
+let leastViews: number;
 let desk: CalibrationDesk;
 
 const refusal = (status: number, code: string) =>
   Response.json({ error: { code, message: code } }, { status });
 
-function answer(method: string, url: string): Response {
+function answer(method: string, url: string, body: unknown): Response {
   if (url === 'api/calibration-sources') {
     const folders = [{ name: 'data/photos', images: 9 }];
     const sources = { folders, recordings: [], cameras: [], keeps: true, complete: true };
@@ -42,12 +46,20 @@ function answer(method: string, url: string): Response {
     session = sampleSession();
     return Response.json(session, { status: 201 });
   }
+  if (url.startsWith('api/calibrations/')) {
+    return url.endsWith('=dso') ? refusal(422, 'k3 must be 0') : new Response('fx_px: 500');
+  }
   if (session === null) return refusal(404, 'not_found');
   if (url.includes('/images?')) {
     refusals -= 1;
     return refusals >= 0 ? refusal(429, 'too_many_images') : Response.json({}, { status: 202 });
   }
   if (url.endsWith('/solution') && method === 'GET') return Response.json(sampleSolution());
+  if (url.endsWith('/solution')) {
+    const { left_out } = body as { left_out: number[] };
+    const left = session.views.length - left_out.length;
+    return left < leastViews ? refusal(409, 'too_few') : Response.json(session);
+  }
   if (url.includes('/views/')) return Response.json({ view: 2, residuals: null });
   if (url.includes(`revision=${session.revision}`)) return new Response(null, { status: 204 });
   if (method === 'DELETE') {
@@ -65,11 +77,12 @@ beforeEach(() => {
   later = [];
   checks = [];
   refusals = 0;
+  leastViews = 0;
   const rest = new RestClient('api', (url, init) => {
     const method = init?.method ?? 'GET';
     const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
     asked.push({ method, url, body });
-    return Promise.resolve(answer(method, url));
+    return Promise.resolve(answer(method, url, body));
   });
   const wait = (callback: () => void) => later.push(callback);
   const notices = new Notices(store, () => 0);
@@ -78,6 +91,12 @@ beforeEach(() => {
   const scenarios = new ScenarioDesk(store, rest, list, notices, (check) => checks.push(check));
   desk = new CalibrationDesk(store, new CalibrationClient(rest), rest, scenarios, notices, wait);
 });
+
+/** The session as it is after an estimate was begun. */
+function withLeftOut(...left: number[]): CalibrationSession {
+  const views = sampleSession().views.map((one) => ({ ...one, left_out: left.includes(one.view) }));
+  return sampleSession({ revision: (session?.revision ?? 0) + 1, views });
+}
 
 const page = () => store.state.calibrationPage;
 const settle = () => new Promise((resolve) => setTimeout(resolve, 0));
@@ -127,11 +146,56 @@ describe('CalibrationDesk', () => {
     await desk.begin();
     await desk.toggleView(0);
     expect(asked.at(-1)?.body).toEqual({ model: 'radtan', k3: false, left_out: [0, 1] });
+    session = withLeftOut(0, 1);
+    await turn();
     await desk.toggleView(1);
-    expect(asked.at(-1)?.body).toMatchObject({ left_out: [] });
+    expect(asked.at(-1)?.body).toMatchObject({ left_out: [0] });
+    session = withLeftOut(0);
+    await turn();
     desk.set({ model: 'equidistant' });
     await desk.solve();
-    expect(asked.at(-1)?.body).toMatchObject({ model: 'equidistant', left_out: [1] });
+    expect(asked.at(-1)?.body).toMatchObject({ model: 'equidistant', left_out: [0] });
+  });
+
+  it('leaves out all views that are chosen while an estimate is made', async () => {
+    await desk.open();
+    await desk.begin();
+    await Promise.all([desk.toggleView(0), desk.toggleView(2)]);
+    await desk.solve();
+    const bodies = asked.filter(({ url }) => url.endsWith('/solution')).map(({ body }) => body);
+    expect(bodies).toMatchObject([
+      { left_out: [0, 1] },
+      { left_out: [0, 1, 2] },
+      { left_out: [0, 1, 2] },
+    ]);
+    expect(page().leftOut).toEqual(new Set([0, 1, 2]));
+    session = withLeftOut(0, 1);
+    await turn();
+    expect(page().leftOut, 'the first estimate').toEqual(new Set([0, 1, 2]));
+    session = withLeftOut(0, 1, 2);
+    await turn();
+    expect(page().leftOut).toBeNull();
+  });
+
+  it('takes a view in again if the server refuses the estimate without it', async () => {
+    await desk.open();
+    await desk.begin();
+    leastViews = 2;
+    await desk.toggleView(0);
+    expect(page()).toMatchObject({ error: 'too_few', leftOut: null });
+    leastViews = 1;
+    await Promise.all([desk.toggleView(0), desk.toggleView(2)]);
+    expect(page()).toMatchObject({ error: 'too_few', leftOut: new Set([0, 1]) });
+    await desk.control({ clear: true });
+    expect(page().leftOut).toBeNull();
+  });
+
+  it('says why a saved calibration cannot be written for a program', async () => {
+    expect(await (await desk.file('c', 'ros'))?.text()).toBe('fx_px: 500');
+    expect(await desk.file('c', 'dso')).toBeNull();
+    expect(store.state.notices.map(({ text }) => text)).toEqual([
+      'c cannot be downloaded: k3 must be 0',
+    ]);
   });
 
   it('sends images one by one and waits while the server has enough', async () => {

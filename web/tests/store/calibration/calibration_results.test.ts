@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+
 import {
   calibratedSection,
   parameterRows,
@@ -27,7 +28,8 @@ describe('parameterRows', () => {
 
 describe('viewRows', () => {
   it('lists every view, with the figures of those in the estimate', () => {
-    const rows = viewRows(sampleSession(), sampleSolution());
+    const page = { session: sampleSession(), solution: sampleSolution(), leftOut: null };
+    const rows = viewRows(page);
     expect(
       rows.map(({ view, rms_px, leftOut, outlier }) => [view, rms_px, leftOut, outlier]),
     ).toEqual([
@@ -35,7 +37,10 @@ describe('viewRows', () => {
       [1, null, true, false],
       [2, 0.06, false, true],
     ]);
-    expect(viewRows(sampleSession(), null).every(({ rms_px }) => rms_px === null)).toBe(true);
+    expect(viewRows({ ...page, solution: null }).every(({ rms_px }) => rms_px === null)).toBe(true);
+    const wanted = viewRows({ ...page, leftOut: new Set([2]) });
+    expect(wanted.map(({ leftOut }) => leftOut)).toEqual([false, false, true]);
+    expect(viewRows({ ...page, session: null })).toEqual([]);
   });
 });
 

@@ -1,5 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+
 import { RestClient } from '../../../src/connection/rest_client';
+
 import type { UploadAnswer } from '../../../src/connection/upload';
 import { LogBrowser } from '../../../src/store/logs/log_browser';
 import { sampleRun } from '../../support/samples';
@@ -74,7 +76,11 @@ beforeEach(() => {
           signal: init?.signal ?? null,
           answer: (document) =>
             resolve(
-              document === null ? new Response(null, { status: 204 }) : Response.json(document),
+              document instanceof Response
+                ? document
+                : document === null
+                  ? new Response(null, { status: 204 })
+                  : Response.json(document),
             ),
         });
       }),
@@ -152,5 +158,32 @@ describe('LogBrowser', () => {
     await settle();
     expect(page().upload).toBeNull();
     expect(page().uploadError).toBe('b.bin: no log');
+  });
+
+  it('uploads files that are dropped during an upload after it', async () => {
+    const done = (name: string) => ({ status: 201, text: JSON.stringify(entry(name)) });
+    void browser.send([file('a.bin')]);
+    void browser.send([file('b.bin'), file('c.bin')]);
+    expect(uploads).toHaveLength(1);
+    uploads[0]?.(done('a.bin'));
+    await settle();
+    await answer('GET', '/logs', list('a.bin'));
+    await answer('GET', '/logs/a.bin', info('a.bin'));
+    await answer('GET', '/logs/a.bin/series', kSeries);
+    expect(uploads).toHaveLength(2);
+    expect(page().upload?.name).toBe('b.bin');
+    uploads[1]?.({ status: 413, text: '{"error":{"code":"full","message":"no room"}}' });
+    await settle();
+    expect(page().uploadError).toBe('b.bin: no room\nNot uploaded: c.bin');
+    expect(page().upload).toBeNull();
+    expect(uploads).toHaveLength(2);
+  });
+
+  it('says why a log could not be deleted', async () => {
+    void browser.remove('a.bin');
+    const error = { code: 'conflict', message: 'it is in use' };
+    await answer('DELETE', '/logs/a.bin', Response.json({ error }, { status: 409 }));
+    await answer('GET', '/logs', list('a.bin'));
+    expect(page().listError).toBe('it is in use');
   });
 });

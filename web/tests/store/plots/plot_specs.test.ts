@@ -92,7 +92,10 @@ describe('plotSpecs', () => {
     session.showTrack('r1', 'feature', false);
     for (const group of ['pose', 'errors', 'estimates'] as const) {
       const lanes = plotSpecs(store.state, group)[0]?.lanes ?? [];
-      expect(lanes.map(({ name, offset_s }) => [name, offset_s])).toEqual([['B feature', 5]]);
+      expect(lanes.map(({ name, offset_s }) => [name, offset_s()])).toEqual([['B feature', 5]]);
+      session.setOffset('r2', 7e9);
+      expect(lanes[0]?.offset_s(), 'the run was moved').toBe(7);
+      session.setOffset('r2', 5e9);
       expect(lanes[0]?.spans()).toHaveLength(1);
     }
   });

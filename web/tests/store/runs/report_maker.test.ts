@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
 import { RestError } from '../../../src/connection/rest_error';
-import { ReportMaker, kMostReportRuns } from '../../../src/store/runs/report_maker';
+import { ReportMaker } from '../../../src/store/runs/report_maker';
 import { Notices } from '../../../src/store/notices';
 import { Store } from '../../../src/store/state';
 import { WatchedRun } from '../../../src/store/watched_run';
@@ -39,15 +39,11 @@ describe('ReportMaker', () => {
     expect((await maker.make())?.fileName).toBe('overfly-report-r0.html');
   });
 
-  it('asks for nothing without a run that is over, or with too many', async () => {
+  it('asks for nothing without a run that is over', async () => {
     const none = making(['running']);
     expect(await none.maker.make()).toBeNull();
     expect(none.texts()[0]).toMatch(/None of the shown runs has ended/);
-    const many = making(new Array<RunStatus>(kMostReportRuns + 1).fill('completed'));
-    expect(await many.maker.make()).toBeNull();
-    expect(many.texts()[0]).toBe('17 runs are shown: a report takes 16 at most.');
     expect(none.rest.report).not.toHaveBeenCalled();
-    expect(many.rest.report).not.toHaveBeenCalled();
   });
 
   it('says why the server makes none, and can be asked again', async () => {

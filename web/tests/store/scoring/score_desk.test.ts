@@ -1,20 +1,29 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+
 import { RestClient } from '../../../src/connection/rest_client';
 import { choiceGroups, ScoreDesk, shortName } from '../../../src/store/scoring/score_desk';
 import { Store } from '../../../src/store/state';
 import { sampleRun } from '../../support/samples';
 
-const evaluation = { truth: { name: 'file:d/t.tum', poses: 2, first_s: 0 }, estimates: [] };
+const evaluation = {
+  truth: { name: 'file:d/t.tum', poses: 2, first_s: 0 },
+  estimates: [],
+};
 
 let store: Store;
 let asked: { url: string; body: unknown }[];
 let failing: string | null;
+let undeletable: boolean;
+/** Scores come when these are called. */
+let held: (() => void)[] | null;
 let desk: ScoreDesk;
 
 beforeEach(() => {
   store = new Store();
   asked = [];
   failing = null;
+  undeletable = false;
+  held = null;
   const rest = new RestClient('api', (url, init) => {
     const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
     asked.push({ url, body });
@@ -35,7 +44,13 @@ beforeEach(() => {
         }),
       );
     }
-    return Promise.resolve(Response.json(evaluation));
+    if (undeletable && init?.method === 'DELETE') {
+      const error = { code: 'forbidden', message: 'it is in use' };
+      return Promise.resolve(Response.json({ error }, { status: 409 }));
+    }
+    if (held === null) return Promise.resolve(Response.json(evaluation));
+    const wait = held;
+    return new Promise((resolve) => wait.push(() => resolve(Response.json(evaluation))));
   });
   desk = new ScoreDesk(store, rest, (url) => {
     asked.push({ url, body: 'file' });
@@ -110,6 +125,32 @@ describe('ScoreDesk', () => {
     await desk.send([new File(['0\n1\n'], 'times.txt')]);
     expect(store.state.scorePage.error).toMatch(/^times\.txt: choose the KITTI poses/);
     expect(asked).toEqual([]);
+  });
+
+  it('scores what was chosen when the page was closed before the answer', async () => {
+    await desk.open();
+    await desk.chooseTruth('file:d/t.tum');
+    held = [];
+    void desk.toggle('file:e');
+    desk.close();
+    held = null;
+    await desk.open();
+    expect(evaluations().slice(1)).toMatchObject([
+      { estimates: ['file:e'], alignments: ['all'] },
+      { estimates: ['file:e'], alignments: ['init_scale'] },
+    ]);
+    expect(store.state.scorePage).toMatchObject({ scores: evaluation, working: false });
+    desk.close();
+    await desk.open();
+    expect(evaluations()).toHaveLength(3);
+  });
+
+  it('says why a file could not be deleted, and keeps it chosen', async () => {
+    await desk.chooseTruth('file:d/t.tum');
+    await desk.toggle('file:e');
+    undeletable = true;
+    await desk.remove('file:e');
+    expect(store.state.scorePage).toMatchObject({ error: 'it is in use', estimates: ['file:e'] });
   });
 
   it('says why nothing could be scored', async () => {
