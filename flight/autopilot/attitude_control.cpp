@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace overfly::autopilot {
 namespace {
@@ -38,6 +39,19 @@ AttitudeControl::AttitudeControl(const Parameters& p, const dynamics::Airframe& 
                                           frame.pitch.pitch_rate,
                                           p.airspeed_cruise)},
       rudder_range_rad_(frame.rudder.max_rad) {}
+
+void AttitudeControl::set_parameters(const Parameters& p, const dynamics::Airframe& frame) {
+  const AttitudeControl before = std::exchange(*this, AttitudeControl(p, frame));
+  roll_.go_on_from(before.roll_);
+  pitch_.go_on_from(before.pitch_);
+  yaw_held_ = before.yaw_held_;
+}
+
+void AttitudeControl::RateLoop::go_on_from(const RateLoop& before) {
+  held = before.held;
+  behind_actuator_rad_s = before.behind_actuator_rad_s;
+  expected_rad_s = before.expected_rad_s;
+}
 
 void AttitudeControl::start_from(const dynamics::Controls& positions) {
   roll_.held = positions.aileron_rad / roll_.range_rad;

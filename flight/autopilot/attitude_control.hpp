@@ -24,6 +24,8 @@ class AttitudeControl {
  public:
   AttitudeControl(const Parameters& parameters, const dynamics::Airframe& airframe);
 
+  /// Goes on with others.
+  void set_parameters(const Parameters& parameters, const dynamics::Airframe& airframe);
   /// Starts from deflections that hold the present flight.
   void start_from(const dynamics::Controls& positions);
   /// The deflections of the next dt_s; the throttle is 0.
@@ -39,6 +41,8 @@ class AttitudeControl {
     double held = 0.0;                  // integral, share of the range
     double behind_actuator_rad_s = 0.0, expected_rad_s = 0.0;
 
+    /// Takes over the state of a loop with other gains.
+    void go_on_from(const RateLoop& before);
     [[nodiscard]] double update(double speed_ratio,
                                 double demand_rad_s,
                                 double rate_rad_s,

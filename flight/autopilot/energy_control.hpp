@@ -29,6 +29,8 @@ class EnergyControl {
 
   EnergyControl(const Parameters& parameters, const dynamics::Airframe& airframe);
 
+  /// Goes on with others.
+  void set_parameters(const Parameters& parameters) { parameters_ = parameters; }
   /// Starts from a steady flight.
   void start_from(double throttle, double pitch_rad);
   [[nodiscard]] Output update(const EnergyDemand& demand, const FlightState& state, double dt_s);

@@ -40,8 +40,9 @@ Status check(const Mission& mission) {
                      " items: must have from 1 to " + std::to_string(kMissionItemsMax)};
   }
   for (std::size_t i = 0; i < mission.items.size(); ++i) {
-    const std::string place = "mission item " + std::to_string(i + 1);
     const MissionItem& item = mission.items[i];
+    const std::string place =
+        "mission item " + std::to_string(item.number != 0 ? item.number : i + 1);
     if (Status status = check_item(item); !status) return status.error().in(place);
     if (item.command == MissionCommand::kTakeOff && i != 0) {
       return Error{ErrorCode::kInvalidArgument,

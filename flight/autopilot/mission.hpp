@@ -30,7 +30,7 @@ struct MissionItem {
   std::optional<double> time_s;
   bool until_height = false;
   double airspeed_m_s = 0.0;     ///< of kSetSpeed
-  std::uint16_t number = 0;      ///< in the mission's file or at the ground station
+  std::uint16_t number = 0;      ///< in the mission's file or at the ground station; 0: none
   double accept_radius_m = 0.0;  ///< of a waypoint; 0: WP_RADIUS or the turn's lead
 };
 
@@ -41,7 +41,7 @@ struct Mission {
 
 inline constexpr std::size_t kMissionItemsMax = 10000;
 
-/// Errors: kInvalidArgument naming item (from 1), field, value and limit.
+/// Errors: kInvalidArgument naming item (its number, or from 1), field, value and limit.
 [[nodiscard]] Status check(const Mission& mission);
 
 }  // namespace overfly::autopilot

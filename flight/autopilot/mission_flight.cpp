@@ -196,6 +196,7 @@ MissionFlight::MissionFlight(std::shared_ptr<const MissionSetup> setup,
       aircraft_(std::move(aircraft)),
       autopilot_(setup_->parameters,
                  setup_->airframe,
+                 setup_->environment,
                  setup_->mission,
                  [smooth = smooth_](const Eigen::Vector2d& at) { return smooth->up_m(at); }) {
   autopilot_.start(flight_state(aircraft_), aircraft_.positions());

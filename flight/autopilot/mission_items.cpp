@@ -86,8 +86,10 @@ class Planner {
       // The only circle whose radius is its second parameter.
       item.radius_m = finite_or_zero(from.parameters[item.until_height ? 1 : 2]);
     }
-    if (item.command != MissionCommand::kReturn) {
-      if (Status status = place(index, from, item); !status) return status;
+    if (item.command == MissionCommand::kReturn) {
+      item.position_m = plan.mission.home_world_m.head<2>();
+    } else if (Status status = place(index, from, item); !status) {
+      return status;
     }
     plan.mission.items.push_back(item);
     return {};
@@ -120,6 +122,14 @@ class Planner {
     return {};
   }
 
+  /// Of the last item that has one; a change of speed has none.
+  [[nodiscard]] std::optional<Eigen::Vector2d> last_place_m() const {
+    for (auto item = plan.mission.items.rbegin(); item != plan.mission.items.rend(); ++item) {
+      if (item->command != MissionCommand::kSetSpeed) return item->position_m;
+    }
+    return std::nullopt;
+  }
+
   Status place(std::size_t index, const Item& from, MissionItem& item) const {
     const bool take_off = item.command == MissionCommand::kTakeOff;
     if (!(std::abs(from.x) <= 90.0 && std::abs(from.y) <= 180.0)) {
@@ -129,9 +139,9 @@ class Planner {
     }
     // Ground stations write 0, 0 where a command needs no position: the place of the item before.
     if (from.x == 0.0 && from.y == 0.0) {
-      if (!take_off && plan.mission.items.empty()) return item_error(index, "has no position");
-      item.position_m = plan.mission.items.empty() ? plan.mission.home_world_m.head<2>().eval()
-                                                   : plan.mission.items.back().position_m;
+      const std::optional<Eigen::Vector2d> before_m = last_place_m();
+      if (!take_off && !before_m) return item_error(index, "has no position");
+      item.position_m = before_m.value_or(plan.mission.home_world_m.head<2>());
     } else {
       const Eigen::Vector3d at = frame_.world_from_geodetic(
           geodetic_from_deg(from.x, from.y, frame_.origin().alt_ellipsoid_m));

@@ -41,8 +41,7 @@ MissionPilot::MissionPilot(const Parameters& parameters, Mission mission, Ground
     : parameters_(parameters),
       mission_(std::move(mission)),
       ground_(std::move(ground)),
-      guidance_(parameters),
-      airspeed_m_s_(parameters.airspeed_cruise) {}
+      guidance_(parameters) {}
 
 double MissionPilot::up_of(const MissionItem& item, const Eigen::Vector2d& at_m) const {
   return item.above_ground ? ground_(at_m) + item.height_m : item.height_m;
@@ -51,17 +50,34 @@ double MissionPilot::up_of(const MissionItem& item, const Eigen::Vector2d& at_m)
 void MissionPilot::start(const FlightState& state, std::size_t item) {
   index_ = item;
   heading_rad_ = state.attitude.yaw_rad;
+  for (std::size_t i = 0; i < std::min(item, mission_.items.size()); ++i) take_speed(i);
   begin_item(state);
+  from_m_ = state.position_world_m.head<2>();
+}
+
+void MissionPilot::set_parameters(const Parameters& parameters) {
+  parameters_ = parameters;
+  guidance_.set_parameters(parameters);
+  if (phase_ == FlightPhase::kReturn) place_return();
+}
+
+bool MissionPilot::take_speed(std::size_t item) {
+  if (mission_.items[item].command != MissionCommand::kSetSpeed) return false;
+  set_airspeed_m_s_ = mission_.items[item].airspeed_m_s;
+  return true;
+}
+
+void MissionPilot::place_return() {
+  MissionItem& item = mission_.items[index_];
+  item.position_m = mission_.home_world_m.head<2>();
+  item.height_m = mission_.home_world_m.z() + parameters_.rtl_altitude;
+  item.above_ground = false;
 }
 
 /// The line to an item starts at the position of the item before it, the first one's where the
 /// aircraft is; so do heights.
 void MissionPilot::begin_item(const FlightState& state) {
-  while (index_ < mission_.items.size() &&
-         mission_.items[index_].command == MissionCommand::kSetSpeed) {
-    airspeed_m_s_ = mission_.items[index_].airspeed_m_s;
-    ++index_;
-  }
+  while (index_ < mission_.items.size() && take_speed(index_)) ++index_;
   circled_rad_ = circling_s_ = 0.0;
   captured_ = false;
   circled_at_height_rad_.reset();
@@ -70,7 +86,7 @@ void MissionPilot::begin_item(const FlightState& state) {
     phase_ = FlightPhase::kDone;
     return;
   }
-  MissionItem& item = mission_.items[index_];
+  const MissionItem& item = mission_.items[index_];
   const Eigen::Vector2d here = state.position_world_m.head<2>();
   from_m_ = here;
   for (std::size_t before = index_; before > 0; --before) {
@@ -91,9 +107,7 @@ void MissionPilot::begin_item(const FlightState& state) {
       break;
     case MissionCommand::kReturn:
       phase_ = FlightPhase::kReturn;
-      item.position_m = mission_.home_world_m.head<2>();
-      item.height_m = mission_.home_world_m.z() + parameters_.rtl_altitude;
-      item.above_ground = false;
+      place_return();
       break;
     default:
       phase_ = FlightPhase::kEnRoute;
@@ -181,7 +195,7 @@ FlightDemand MissionPilot::fly_line(const FlightState& state) {
   const Eigen::Vector2d velocity = state.v_world_m_s.head<2>();
   FlightDemand demand;
   demand.roll_rad = roll_for(guidance_.along_line(from_m_, item.position_m, here, velocity), state);
-  demand.energy.airspeed_m_s = airspeed_m_s_;
+  demand.energy.airspeed_m_s = airspeed_m_s();
   const Eigen::Vector2d line = item.position_m - from_m_;
   const double length = line.norm();
   double share = 1.0;
@@ -228,7 +242,7 @@ FlightDemand MissionPilot::fly_circle(const FlightState& state, double dt_s) {
   FlightDemand demand;
   demand.roll_rad = roll_for(
       guidance_.around_circle(item.position_m, radius, here, state.v_world_m_s.head<2>()), state);
-  demand.energy = {.up_m = up_of(item, here), .climb_m_s = 0.0, .airspeed_m_s = airspeed_m_s_};
+  demand.energy = {.up_m = up_of(item, here), .climb_m_s = 0.0, .airspeed_m_s = airspeed_m_s()};
   return demand;
 }
 
@@ -240,7 +254,7 @@ FlightDemand MissionPilot::climb_out(const FlightState& state) const {
   demand.roll_rad = std::clamp(drift, -limit, limit);
   demand.energy = {.up_m = up_of(mission_.items[index_], state.position_world_m.head<2>()),
                    .climb_m_s = 0.0,
-                   .airspeed_m_s = airspeed_m_s_};
+                   .airspeed_m_s = airspeed_m_s()};
   // Less pitch while the launch leaves the aircraft slow.
   const double slow =
       std::clamp(state.airspeed_m_s / parameters_.airspeed_min - 0.6, 0.0, 0.6) / 0.6;
@@ -274,7 +288,7 @@ FlightDemand MissionPilot::update(const FlightState& state, double dt_s) {
       const Eigen::Vector2d here = state.position_world_m.head<2>();
       if (state.position_world_m.z() - ground_(here) > parameters_.land_flare_alt) {
         FlightDemand demand = fly_line(state);
-        demand.energy.airspeed_m_s = std::max(parameters_.airspeed_min, 0.9 * airspeed_m_s_);
+        demand.energy.airspeed_m_s = std::max(parameters_.airspeed_min, 0.9 * airspeed_m_s());
         return demand;
       }
       phase_ = FlightPhase::kFlare;
@@ -290,7 +304,7 @@ FlightDemand MissionPilot::update(const FlightState& state, double dt_s) {
   // After the last item the wings are level and the height is held.
   FlightDemand demand;
   demand.energy = {
-      .up_m = state.position_world_m.z(), .climb_m_s = 0.0, .airspeed_m_s = airspeed_m_s_};
+      .up_m = state.position_world_m.z(), .climb_m_s = 0.0, .airspeed_m_s = airspeed_m_s()};
   return demand;
 }
 

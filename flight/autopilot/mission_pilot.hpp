@@ -33,8 +33,11 @@ class MissionPilot {
   /// @param ground  heights above ground count from it
   MissionPilot(const Parameters& parameters, Mission mission, GroundHeight ground);
 
-  /// The first item, with the index `item`, starts at the present position.
+  /// The first item, with the index `item`, starts at the present position. Changes of speed before
+  /// it hold.
   void start(const FlightState& state, std::size_t item = 0);
+  /// Goes on with others, at the same place of the mission.
+  void set_parameters(const Parameters& parameters);
   [[nodiscard]] FlightDemand update(const FlightState& state, double dt_s);
 
   [[nodiscard]] FlightPhase phase() const { return phase_; }
@@ -45,6 +48,13 @@ class MissionPilot {
 
  private:
   void begin_item(const FlightState& state);
+  /// @return whether the item is a change of speed
+  bool take_speed(std::size_t item);
+  /// The present item is the return.
+  void place_return();
+  [[nodiscard]] double airspeed_m_s() const {
+    return set_airspeed_m_s_.value_or(parameters_.airspeed_cruise);
+  }
   [[nodiscard]] bool reached(const FlightState& state) const;
   [[nodiscard]] bool heads_for_next(const FlightState& state) const;
   [[nodiscard]] double up_of(const MissionItem& item, const Eigen::Vector2d& at_m) const;
@@ -61,7 +71,7 @@ class MissionPilot {
   PathGuidance guidance_;
   std::size_t index_ = 0;
   FlightPhase phase_ = FlightPhase::kEnRoute;
-  double airspeed_m_s_ = 0.0;
+  std::optional<double> set_airspeed_m_s_;            // by the mission
   Eigen::Vector2d from_m_ = Eigen::Vector2d::Zero();  // start of the line
   double from_height_m_ = 0.0;                        // in the terms of the item's own height
   double heading_rad_ = 0.0;                          // of the take-off

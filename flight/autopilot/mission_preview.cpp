@@ -31,7 +31,7 @@ class PreviewAircraft {
       : parameters_(setup.parameters),
         wind_m_s_(setup.wind_world_m_s.head<2>()),
         gravity_m_s2_(setup.environment.gravity_m_s2),
-        stall_m_s_(dynamics::stall_speed_m_s(setup.airframe, {}, 0.0)),
+        stall_speed_(setup.airframe, setup.environment),
         position_m_(start.position_world_m),
         yaw_rad_(start.attitude.yaw_rad),
         airspeed_m_s_(start.airspeed_m_s),
@@ -60,7 +60,8 @@ class PreviewAircraft {
   }
 
   void step(const FlightDemand& demand, FlightPhase phase) {
-    const double bank_max = bank_limit_rad(stall_m_s_, airspeed_m_s_);
+    const double stall_m_s = stall_speed_.at_m_s(position_m_.z());
+    const double bank_max = bank_limit_rad(stall_m_s, airspeed_m_s_);
     roll_rad_ = followed(roll_rad_,
                          std::clamp(demand.roll_rad, -bank_max, bank_max),
                          parameters_.rll2srv_tconst,
@@ -69,7 +70,7 @@ class PreviewAircraft {
                        kStepS * gravity_m_s2_ * std::tan(roll_rad_) / std::max(airspeed_m_s_, 1.0));
     climb_m_s_ = followed(climb_m_s_, climb_demand(demand, phase), kClimbLagS, gravity_m_s2_);
     if (phase == FlightPhase::kFlare) {
-      airspeed_m_s_ = std::max(1.1 * stall_m_s_, airspeed_m_s_ - kStepS * kFlareSlowingMS2);
+      airspeed_m_s_ = std::max(1.1 * stall_m_s, airspeed_m_s_ - kStepS * kFlareSlowingMS2);
     } else {
       airspeed_m_s_ = followed(
           airspeed_m_s_,
@@ -105,7 +106,7 @@ class PreviewAircraft {
   Parameters parameters_;
   Eigen::Vector2d wind_m_s_;
   double gravity_m_s2_;
-  double stall_m_s_;
+  StallSpeed stall_speed_;
   double alpha_rad_ = 0.0;
   double take_off_climb_m_s_ = 0.0;
   Eigen::Vector3d position_m_;

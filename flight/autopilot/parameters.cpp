@@ -51,7 +51,7 @@ constexpr std::array kTable{
     ParameterInfo{"THR_MIN", &P::thr_min, 0.0, 99.0},
     ParameterInfo{"TKOFF_LVL_PITCH", &P::tkoff_lvl_pitch, 0.0, 30.0},
     ParameterInfo{"TRIM_THROTTLE", &P::trim_throttle, 0.0, 100.0},
-    ParameterInfo{"WP_LOITER_RAD", &P::wp_loiter_rad, -10000.0, 10000.0},
+    ParameterInfo{"WP_LOITER_RAD", &P::wp_loiter_rad, -10000.0, 10000.0, 1.0},
     ParameterInfo{"WP_RADIUS", &P::wp_radius, 1.0, 10000.0},
     ParameterInfo{"YAW2SRV_DAMP", &P::yaw2srv_damp, 0.0, 10.0},
     ParameterInfo{"YAW2SRV_INT", &P::yaw2srv_int, 0.0, 20.0},
@@ -164,10 +164,13 @@ std::span<const ParameterInfo> parameter_table() { return kTable; }
 Status set_parameter(Parameters& parameters, std::string_view name, double value) {
   for (const ParameterInfo& info : kTable) {
     if (name != info.name) continue;
-    if (!(value >= info.minimum && value <= info.maximum)) {
+    if (!(value >= info.minimum && value <= info.maximum && std::abs(value) >= info.least)) {
+      const std::string gap =
+          info.least > 0.0 ? number_text(-info.least) + "] or [" + number_text(info.least) + ", "
+                           : std::string();
       return Error{ErrorCode::kInvalidArgument,
                    std::string(name) + " = " + number_text(value) + ": must be in [" +
-                       number_text(info.minimum) + ", " + number_text(info.maximum) + "]"};
+                       number_text(info.minimum) + ", " + gap + number_text(info.maximum) + "]"};
     }
     parameters.*info.value = value;
     return {};

@@ -64,6 +64,7 @@ struct ParameterInfo {
   double Parameters::*value;
   double minimum;
   double maximum;
+  double least = 0.0;  ///< of the absolute value
 };
 
 /// All of them, in the order of their names.

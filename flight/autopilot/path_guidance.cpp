@@ -25,6 +25,11 @@ double right_of(const Eigen::Vector2d& direction, const Eigen::Vector2d& vector)
 PathGuidance::PathGuidance(const Parameters& parameters)
     : period_s_(parameters.navl1_period), damping_(parameters.navl1_damping) {}
 
+void PathGuidance::set_parameters(const Parameters& parameters) {
+  period_s_ = parameters.navl1_period;
+  damping_ = parameters.navl1_damping;
+}
+
 double PathGuidance::lead_m(double speed_m_s) const {
   return damping_ * period_s_ * std::max(speed_m_s, kSlowest) / kPi;
 }

@@ -19,6 +19,7 @@ namespace overfly::autopilot {
 class PathGuidance {
  public:
   explicit PathGuidance(const Parameters& parameters);
+  void set_parameters(const Parameters& parameters);
 
   [[nodiscard]] double along_line(const Eigen::Vector2d& from_m,
                                   const Eigen::Vector2d& to_m,

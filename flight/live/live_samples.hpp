@@ -55,8 +55,7 @@ class LiveSamples final : private logs::LogSink {
   /// @param geoid_separation_m  added to the heights of the vehicle's GPS
   /// @param autopilot  as LiveSensors
   explicit LiveSamples(double geoid_separation_m, std::uint8_t autopilot = 0)
-      : streams_of_frames_(*this, logs::FirstStamps::kHeld),
-        sensors_(geoid_separation_m, autopilot) {}
+      : streams_of_frames_(*this), sensors_(geoid_separation_m, autopilot) {}
   LiveSamples(const LiveSamples&) = delete;
   LiveSamples& operator=(const LiveSamples&) = delete;
 

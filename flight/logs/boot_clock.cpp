@@ -1,6 +1,7 @@
 #include "flight/logs/boot_clock.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/time.hpp"
 
@@ -15,6 +16,42 @@ constexpr std::int64_t kLatestNs = 100LL * 366 * 86400 * kNsPerS;
 
 }  // namespace
 
+/// A plausible stamp, this long after the latest one.
+void BootClock::follow(std::int64_t step_ns) {
+  agreeing_ = 0;
+  first_ = std::min(first_ + 1, kBelieved);
+  if (before_jump_ns_) {
+    if (++since_jump_ == kBelieved) before_jump_ns_.reset();
+  } else if (step_ns > kMaxBackNs) {
+    // After a wrong stamp less far ahead, right ones are plausible.
+    before_jump_ns_ = latest_->t_ns;
+    since_jump_ = 1;
+    right_until_ns_.reset();
+  }
+}
+
+/// The last of three stamps that agree, but not with the latest time.
+LogTime BootClock::believe(std::int64_t t_ns) {
+  agreeing_ = 0;
+  if (first_ < kBelieved) {
+    first_were_wrong_ = true;
+    right_until_ns_ = -1;
+    implausible_ += static_cast<std::uint64_t>(std::exchange(first_, kBelieved));
+    latest_->t_ns = t_ns;
+  } else if (before_jump_ns_) {
+    right_until_ns_ = before_jump_ns_;
+    implausible_ += static_cast<std::uint64_t>(since_jump_);
+    latest_->t_ns = *before_jump_ns_;
+  }
+  before_jump_ns_.reset();
+  if (t_ns < latest_->t_ns - kMaxBackNs) {
+    latest_ = LogTime{latest_->boot + 1, t_ns};
+  } else {
+    latest_->t_ns = std::max(latest_->t_ns, t_ns);
+  }
+  return {latest_->boot, t_ns};
+}
+
 std::optional<LogTime> BootClock::take(std::int64_t t_ns) {
   if (t_ns < 0 || t_ns > kLatestNs) {
     ++implausible_;
@@ -27,8 +64,7 @@ std::optional<LogTime> BootClock::take(std::int64_t t_ns) {
   }
   const std::int64_t step_ns = t_ns - latest_->t_ns;
   if (step_ns >= -kMaxBackNs && step_ns <= kMaxAheadNs) {
-    agreeing_ = 0;
-    first_ = std::min(first_ + 1, kBelieved);
+    follow(step_ns);
     latest_->t_ns = std::max(latest_->t_ns, t_ns);
     return LogTime{latest_->boot, t_ns};
   }
@@ -41,15 +77,7 @@ std::optional<LogTime> BootClock::take(std::int64_t t_ns) {
     ++implausible_;
     return std::nullopt;
   }
-  agreeing_ = 0;
-  const bool restart = step_ns < 0 && proven();
-  if (!proven()) {
-    first_were_wrong_ = true;
-    implausible_ += static_cast<std::uint64_t>(first_);
-  }
-  first_ = kBelieved;
-  latest_ = LogTime{latest_->boot + (restart ? 1U : 0U), t_ns};
-  return latest_;
+  return believe(t_ns);
 }
 
 }  // namespace overfly::flight::logs

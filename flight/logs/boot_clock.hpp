@@ -8,12 +8,6 @@
 
 namespace overfly::flight::logs {
 
-/// What a reader does with the messages of a clock's first stamps, which nothing confirms yet.
-enum class FirstStamps {
-  kPassed,  ///< passes them on at once
-  kHeld,    ///< holds them (HeldMessages) until the clock is proven
-};
-
 /// Follows a clock that counts from the vehicle's start, and notices its restarts.
 ///
 /// A stamp is plausible if it lies at most 2 s before the latest one (messages are logged slightly
@@ -21,34 +15,40 @@ enum class FirstStamps {
 /// believed although they are not: earlier ones as a restart, later ones as a gap of the log. All
 /// others are counted and left out, because records of DataFlash have no checksum.
 ///
-/// The first stamp has none before it to be compared with. If stamps are believed instead of fewer
-/// than three first ones, those first ones were wrong: they begin no run of the clock. Only a
-/// reader that holds their messages can still take them back.
+/// The first stamp has none before it to be compared with, and one that jumps ahead by more than
+/// 2 s may be damaged or come after a gap. Until two more stamps follow such a one, the clock is
+/// not proven. If others are believed instead, the unproven ones were wrong: they begin no run of
+/// the clock, and the time in front of a jump goes on. Readers hold the messages of unproven stamps
+/// (HeldMessages) to take them back then.
 class BootClock {
  public:
   /// Stamps in a row that agree and are then believed.
   static constexpr int kBelieved = 3;
-
-  explicit BootClock(FirstStamps first_stamps = FirstStamps::kPassed)
-      : first_stamps_(first_stamps) {}
 
   /// @return the time, or empty if the stamp is not plausible
   [[nodiscard]] std::optional<LogTime> take(std::int64_t t_ns);
 
   /// The latest time; empty before the first.
   [[nodiscard]] const std::optional<LogTime>& latest() const { return latest_; }
-  /// Whether the first stamps are known to be right or wrong; always if they are passed on.
-  [[nodiscard]] bool proven() const {
-    return first_stamps_ == FirstStamps::kPassed || first_ == kBelieved;
-  }
-  /// The stamps before the clock was proven were wrong.
+  /// Whether the latest stamps are known to be right or wrong.
+  [[nodiscard]] bool proven() const { return first_ == kBelieved && !before_jump_ns_; }
+  /// The stamps before the clock was proven for the first time were wrong.
   [[nodiscard]] bool first_were_wrong() const { return first_were_wrong_; }
+  /// Whether a time that was given since the clock was proven last turned out to be wrong.
+  [[nodiscard]] bool was_wrong(const LogTime& time) const {
+    return right_until_ns_ && time.t_ns > *right_until_ns_;
+  }
   [[nodiscard]] std::uint64_t implausible() const { return implausible_; }
 
  private:
-  FirstStamps first_stamps_;
+  void follow(std::int64_t step_ns);
+  [[nodiscard]] LogTime believe(std::int64_t t_ns);
+
   std::optional<LogTime> latest_;
   int first_ = 0;  ///< stamps taken since the first one, up to kBelieved
+  std::optional<std::int64_t> before_jump_ns_;  ///< the latest time in front of an unproven jump
+  int since_jump_ = 0;                          ///< stamps taken from that jump on
+  std::optional<std::int64_t> right_until_ns_;  ///< of the times that were not proven
   bool first_were_wrong_ = false;
   std::int64_t suspect_ns_ = 0;
   int agreeing_ = 0;

@@ -13,8 +13,8 @@ namespace overfly::flight::logs {
 /// If a clock is not proven by then, it is believed.
 inline constexpr std::size_t kMostHeld = 64;
 
-/// The messages of a clock's first stamps, in their order. At most kMostHeld are held: if the clock
-/// is not proven by then, they are passed on as they are.
+/// The messages of a clock's unproven stamps, in their order. At most kMostHeld are held: if the
+/// clock is not proven by then, they are passed on as they are.
 template <typename Message>
 class HeldMessages {
  public:
@@ -25,14 +25,14 @@ class HeldMessages {
   void hold(const std::optional<LogTime>& time, Message message) {
     held_.emplace_back(time, std::move(message));
   }
-  /// Passes on what is held: without times if they were wrong.
+  /// Passes on what is held: without times that were wrong.
   /// @param pass  takes the time and the message
   template <typename Pass>
   void release(const BootClock& clock, const Pass& pass) {
     if (held_.empty()) return;
     const std::vector<std::pair<std::optional<LogTime>, Message>> held = std::exchange(held_, {});
     for (const auto& [time, message] : held) {
-      pass(clock.first_were_wrong() ? std::nullopt : time, message);
+      pass(time && clock.was_wrong(*time) ? std::nullopt : time, message);
     }
   }
 

@@ -38,7 +38,7 @@ void TlogRecords::rewind() {
 
 Status TlogRecords::find_first_stamp() {
   constexpr std::uint64_t kMostUs = std::uint64_t{1} << 52U;  // its nanoseconds fit
-  logs::BootClock clock(logs::FirstStamps::kHeld);
+  logs::BootClock clock;
   std::vector<std::uint64_t> stamps_us;
   while (!clock.proven() && stamps_us.size() < logs::kMostHeld) {
     const auto record = next();

@@ -39,8 +39,16 @@ SimulatedVehicle::SimulatedVehicle(const VehicleSetup& setup,
                 [this](const MissionStore::Items& items) { return check_mission(items); }),
       parked_heading_rad_(setup.heading_rad) {}
 
+Result<autopilot::PlannedMission> SimulatedVehicle::plan(MissionStore::Items items) const {
+  // As ArduPlane: item 0 of an upload does not move home.
+  items.front().x = deg_from_rad(setup_.home.lat_rad);
+  items.front().y = deg_from_rad(setup_.home.lon_rad);
+  items.front().z = static_cast<float>(setup_.home.alt_ellipsoid_m);
+  return autopilot::plan_mission(items, frame_, ground_, std::nullopt);
+}
+
 Status SimulatedVehicle::check_mission(const MissionStore::Items& items) const {
-  const auto planned = autopilot::plan_mission(items, frame_, ground_, std::nullopt);
+  const auto planned = plan(items);
   if (!planned) return planned.error();
   return {};
 }
@@ -79,8 +87,11 @@ void SimulatedVehicle::say(const std::string& text, Severity severity, const Sen
 
 void SimulatedVehicle::follow(autopilot::Mission mission, std::size_t item) {
   flown_ = std::move(mission);
-  autopilot_.emplace(
-      parameters_.values(), setup_.airframe, flown_, [](const Eigen::Vector2d&) { return 0.0; });
+  autopilot_.emplace(parameters_.values(),
+                     setup_.airframe,
+                     aircraft_->environment(),
+                     flown_,
+                     [](const Eigen::Vector2d&) { return 0.0; });
   autopilot_->start(autopilot::flight_state(*aircraft_), aircraft_->positions(), item);
 }
 
@@ -94,8 +105,7 @@ void SimulatedVehicle::circle(const Eigen::Vector3d& centre_m) {
 
 Status SimulatedVehicle::fly_mission(std::size_t item) {
   if (missions_.items().empty()) return Error{ErrorCode::kConflict, "AUTO: there is no mission"};
-  Result<autopilot::PlannedMission> planned =
-      autopilot::plan_mission(missions_.items(), frame_, ground_, std::nullopt);
+  Result<autopilot::PlannedMission> planned = plan(missions_.items());
   if (!planned) return planned.error();
   if (aircraft_) {
     const std::size_t last = planned->mission.items.size() - 1;

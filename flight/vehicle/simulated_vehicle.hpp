@@ -72,6 +72,8 @@ class SimulatedVehicle {
   [[nodiscard]] std::uint8_t arm(bool wanted, bool forced, const Send& send);
   [[nodiscard]] std::uint8_t change_mode(Mode mode, const Send& send);
   [[nodiscard]] std::uint8_t reposition(const Frame& frame, const Send& send);
+  /// The flight of an upload from this vehicle's home. @pre not empty
+  [[nodiscard]] Result<autopilot::PlannedMission> plan(MissionStore::Items items) const;
   [[nodiscard]] Status check_mission(const MissionStore::Items& items) const;
   /// Starts the flight by the mission from an item, from the ground or in flight.
   [[nodiscard]] Status fly_mission(std::size_t item);

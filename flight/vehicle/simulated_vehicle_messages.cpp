@@ -53,7 +53,7 @@ void SimulatedVehicle::take(const Frame& frame, const Send& send) {
       return;
     case ParameterStore::Outcome::kChanged:
       // The loops take the new values over where they are.
-      if (aircraft_) follow(flown_, autopilot_->pilot().item());
+      if (aircraft_) autopilot_->set_parameters(parameters_.values(), setup_.airframe);
       return;
     case ParameterStore::Outcome::kRefused:
       return say(refusal, Severity::kWarning, send);

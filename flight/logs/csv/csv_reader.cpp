@@ -98,7 +98,7 @@ class PiecePass {
   StreamId id_;
   bool wanted_;
   LogSink& sink_;
-  BootClock clock_{FirstStamps::kHeld};
+  BootClock clock_;
   HeldMessages<std::vector<std::string>> held_;  ///< fields of rows
   std::size_t time_index_ = 0;
   std::size_t valid_index_ = 0;

@@ -83,7 +83,7 @@ class DataflashPass {
   FormatTable table_;
   std::array<std::unique_ptr<RecordKind>, 256> kinds_;
   StreamId stream_count_ = 0;
-  BootClock clock_{FirstStamps::kHeld};
+  BootClock clock_;
   HeldMessages<std::vector<std::uint8_t>> held_;
   std::optional<LocalOrigin> estimator_origin_;
   std::vector<StreamId> estimator_streams_;

@@ -33,7 +33,7 @@ class LcmPass {
     bool wanted = false;
     bool sensors = false;
     LcmType type = LcmType::kOther;
-    BootClock clock{FirstStamps::kHeld};
+    BootClock clock;
     HeldMessages<std::vector<std::uint8_t>> held;  ///< all that is read of each message
   };
 

@@ -44,7 +44,7 @@ class RosTopics final : public RosMessageSink {
     RosTopicName name;
     bool sensors = false;
     bool wanted = false;
-    BootClock clock{FirstStamps::kHeld};
+    BootClock clock;
     HeldMessages<std::optional<RosSample>> held;
   };
   using Key = std::pair<std::string, std::pair<std::string, RosEncoding>>;

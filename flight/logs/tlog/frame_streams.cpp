@@ -22,10 +22,7 @@ using mavlink::MessageId;
 
 FrameStreams::Sender& FrameStreams::sender_of(const Frame& frame) {
   Sender& sender = senders_[(std::uint32_t{frame.system} << 8U) | frame.component];
-  if (sender.name.empty()) {
-    sender.name = sender_name(frame);
-    sender.clock = BootClock(first_stamps_);
-  }
+  if (sender.name.empty()) sender.name = sender_name(frame);
   return sender;
 }
 
@@ -120,8 +117,7 @@ void FrameStreams::take_events(const Frame& frame,
                                const std::optional<LogTime>& time,
                                Sender& sender) {
   const auto event = [&](EventKind kind, std::string text) {
-    const bool wait = !time && first_stamps_ == FirstStamps::kHeld;
-    if (wait && sender.untimed_events.size() < kMaxUntimedEvents) {
+    if (!time && sender.untimed_events.size() < kMaxUntimedEvents) {
       sink_.declaration();
       sender.untimed_events.emplace_back(kind, std::move(text));
     } else {

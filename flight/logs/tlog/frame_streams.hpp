@@ -16,13 +16,11 @@
 namespace overfly::flight::logs {
 
 /// Passes what MAVLink messages contain to a sink, with the times of the vehicle's clock: those of
-/// the message, or of the latest message of the same component that has one. Where first stamps are
-/// held, events before a component's first time are held as well, and get that time: the vehicle
-/// was in that mode when it came.
+/// the message, or of the latest message of the same component that has one. Events before a
+/// component's first time are held, and get that time: the vehicle was in that mode when it came.
 class FrameStreams {
  public:
-  explicit FrameStreams(LogSink& sink, FirstStamps first_stamps = FirstStamps::kPassed)
-      : sink_(sink), first_stamps_(first_stamps) {}
+  explicit FrameStreams(LogSink& sink) : sink_(sink) {}
 
   void take(const mavlink::Frame& frame);
   /// The frame whose content is being passed to the sink: the one that was taken, or one that was
@@ -70,7 +68,6 @@ class FrameStreams {
   void pass_untimed_events(Sender& sender, const std::optional<LogTime>& time);
 
   LogSink& sink_;
-  FirstStamps first_stamps_;
   const mavlink::Frame* passing_ = nullptr;
   std::unordered_map<std::uint64_t, Stream> streams_;
   std::unordered_map<std::uint32_t, Sender> senders_;

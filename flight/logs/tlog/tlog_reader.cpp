@@ -48,7 +48,7 @@ bool is_tlog(std::span<const std::uint8_t> head) {
 
 Status read_tlog(ForwardReader& file, LogSink& sink) {
   mavlink::FrameFinder finder(kStampBytes);
-  FrameStreams streams(sink, FirstStamps::kHeld);
+  FrameStreams streams(sink);
   std::uint64_t last_stamp_us = 0;
   std::uint64_t backward_stamps = 0;
   while (true) {

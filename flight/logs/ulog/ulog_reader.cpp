@@ -67,7 +67,7 @@ class UlogPass {
   UlogFormats formats_;
   std::unordered_map<std::uint16_t, Topic> topics_;  ///< by msg_id
   StreamId stream_count_ = 0;
-  BootClock clock_{FirstStamps::kHeld};
+  BootClock clock_;
   HeldMessages<std::vector<std::uint8_t>> held_;  ///< bodies
   std::vector<std::uint64_t> appended_;
   std::uint64_t skipped_bytes_ = 0;

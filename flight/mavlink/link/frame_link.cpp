@@ -48,7 +48,6 @@ Status FrameLink::open(LinkClock::time_point now) {
   link_ = std::move(*link);
   address_ = link_->address();
   opened_ = now;
-  ++counts_.connections;
   return {};
 }
 
@@ -168,11 +167,8 @@ Status FrameLink::send(std::uint32_t message_id,
                          : encode_frame(frame);
   if (!bytes) return bytes.error();
   ++sequence_;
-  bool sent = false;
   const auto send_to = [&](PeerId peer) {
-    if (!link_ || !link_->send(peer, *bytes)) return;
-    sent = true;
-    counts_.sent_bytes += bytes->size();
+    if (link_ && link_->send(peer, *bytes)) counts_.sent_bytes += bytes->size();
   };
   if (target_system != 0 && ways_[target_system]) {
     send_to(*ways_[target_system]);
@@ -183,7 +179,6 @@ Status FrameLink::send(std::uint32_t message_id,
   } else {
     send_to(0);
   }
-  ++(sent ? counts_.sent_frames : counts_.unsent_frames);
   return {};
 }
 

@@ -49,11 +49,8 @@ struct LinkCounts {
   std::uint64_t skipped_bytes = 0;  ///< that belong to no valid frame
   /// Not signed with the key, or played back.
   std::uint64_t refused_signatures = 0;
-  std::uint64_t sent_frames = 0;
   std::uint64_t sent_bytes = 0;
-  std::uint64_t unsent_frames = 0;  ///< no peer, or it is too slow
-  std::uint64_t connections = 0;    ///< times that the link was opened
-  std::uint64_t failures = 0;       ///< times that opening or using it failed
+  std::uint64_t failures = 0;  ///< times that opening or using it failed
   std::string last_failure;
 };
 
@@ -80,7 +77,7 @@ class FrameLink {
   /// Sends a message to a system, by the way that its last message came; 0: to all that were heard.
   /// MAVLink 1 leaves out extension fields.
   /// Errors: as encode_frame; kConflict on a read-only link. A message that cannot be sent at the
-  /// moment is lost, as on any link: it is counted.
+  /// moment is lost, as on any link.
   [[nodiscard]] Status send(std::uint32_t message_id,
                             std::span<const std::uint8_t> payload,
                             std::uint8_t target_system);

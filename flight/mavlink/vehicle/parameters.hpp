@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,10 +33,5 @@ struct Parameter {
 /// Reads all parameters, and asks again for those that get lost on the way. Ordered by index.
 /// Errors: as ask(); kIo naming the number of parameters that are missing.
 [[nodiscard]] Result<std::vector<Parameter>> read_all_parameters(Exchange& exchange);
-
-/// Reads a parameter file of a ground station: a name and a value in each line, separated by white
-/// space or a comma; '#' starts a comment. The last of equal names counts.
-/// Errors: as FieldFile::read; kUnreadable naming file, line, column and value.
-[[nodiscard]] Result<std::vector<Parameter>> read_parameter_file(const std::filesystem::path& file);
 
 }  // namespace overfly::flight::mavlink

@@ -361,12 +361,6 @@ LinkCounts Vehicle::link_counts() const {
   return impl_->counts;
 }
 
-std::optional<milliseconds> Vehicle::silence() const {
-  const std::lock_guard lock(impl_->mutex);
-  if (!impl_->last_message) return std::nullopt;
-  return std::chrono::duration_cast<milliseconds>(LinkClock::now() - *impl_->last_message);
-}
-
 std::optional<VehicleClock> Vehicle::clock() const {
   const std::lock_guard lock(impl_->mutex);
   const std::optional<std::int64_t> vehicle_ns =

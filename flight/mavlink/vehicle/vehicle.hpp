@@ -53,8 +53,6 @@ class Vehicle {
                                         const std::atomic<bool>* cancel);
   [[nodiscard]] VehicleState state() const;
   [[nodiscard]] LinkCounts link_counts() const;
-  /// The time since the last message of the vehicle; empty before the first.
-  [[nodiscard]] std::optional<std::chrono::milliseconds> silence() const;
   /// Empty until the vehicle has answered some requests, and on a read-only link.
   [[nodiscard]] std::optional<VehicleClock> clock() const;
   /// With the actual port if 0 was asked for.

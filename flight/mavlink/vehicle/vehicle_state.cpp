@@ -43,14 +43,6 @@ void take_system_time(const Frame& frame, VehicleState& state) {
   state.utc_minus_boot_ns = time.unix_us * 1000 - time.boot_ns;
 }
 
-void take_attitude_angles(const Frame& frame, VehicleState& state) {
-  const RollPitchYaw angles = decode_attitude(frame).angles;
-  if (std::isfinite(angles.roll_rad) && std::isfinite(angles.pitch_rad) &&
-      std::isfinite(angles.yaw_rad)) {
-    state.attitude = angles;
-  }
-}
-
 }  // namespace
 
 void take_message(const Frame& frame, VehicleState& state) {
@@ -77,21 +69,6 @@ void take_message(const Frame& frame, VehicleState& state) {
       return take_local_origin(frame, state);
     case MessageId::kSystemTime:
       return take_system_time(frame, state);
-    case MessageId::kAttitude:
-      return take_attitude_angles(frame, state);
-    case MessageId::kVfrHud:
-      state.flight = decode_vfr_hud(frame);
-      return;
-    case MessageId::kMissionCurrent:
-      state.mission_item = decode_mission_sequence(frame);
-      return;
-    case MessageId::kExtendedSysState:
-      state.landed_state = PayloadReader(frame.payload).at<std::uint8_t>(1);
-      return;
-    case MessageId::kStatusText:
-      state.texts.push_back(decode_status_text(frame));
-      if (state.texts.size() > kMaxStatusTexts) state.texts.pop_front();
-      return;
     default:
       return;
   }

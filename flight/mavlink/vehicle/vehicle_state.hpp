@@ -2,16 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 
-#include "core/motion/pose.hpp"
 #include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::mavlink {
-
-inline constexpr std::size_t kMaxStatusTexts = 20;
 
 /// The latest value of each kind; empty: never received.
 struct VehicleState {
@@ -28,12 +24,6 @@ struct VehicleState {
   std::optional<GlobalPosition> origin;    ///< of its local positions
   /// UTC since 1970 minus the vehicle's clock [ns], where the vehicle knows it.
   std::optional<std::int64_t> utc_minus_boot_ns;
-  std::optional<RollPitchYaw> attitude;  ///< of the vehicle's estimator
-  std::optional<VfrHud> flight;          ///< speeds
-  std::optional<std::uint16_t> mission_item;
-  /// MAV_LANDED_STATE: 1 on the ground, 2 in the air, 3 taking off, 4 landing.
-  std::optional<std::uint8_t> landed_state;
-  std::deque<StatusText> texts;  ///< the latest kMaxStatusTexts
 
   // Of the link, by sequence numbers:
   std::uint64_t messages = 0;

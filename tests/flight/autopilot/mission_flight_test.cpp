@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/time.hpp"
+#include "flight/autopilot/mission_preview.hpp"
+#include "flight/dynamics/trim.hpp"
 #include "tests/flight/autopilot/flights.hpp"
 
 namespace overfly::autopilot {
@@ -118,6 +120,37 @@ TEST(MissionFlight, StaysInTheAirForAnHourOfModerateTurbulence) {
     EXPECT_GT(lowest, 250.0) << name;
     EXPECT_LT(highest, 350.0) << name;
   }
+}
+
+TEST(MissionFlight, BanksLessInThinAir) {
+  MissionSetup setup = setup_of("foam_trainer");
+  setup.environment.alt_msl_at_origin_m = 2500.0;
+  setup.parameters = tuned_for(setup.airframe, setup.environment, 10.0, 300.0).value();
+  MissionItem circle = item_of(MissionCommand::kLoiter, waypoint(0, 60, 300));
+  circle.radius_m = 5.0;  // far less than it can fly
+  setup.mission.items = {circle};
+  setup.duration_max_s = 40.0;
+  const StallSpeed stall(setup.airframe, setup.environment);
+  EXPECT_NEAR(stall.at_m_s(300.0),
+              dynamics::stall_speed_m_s(setup.airframe, setup.environment, 300.0),
+              1e-9);
+  double beyond_rad = -kPi;
+  fly(setup, [&](const MissionFlight& at) {
+    const FlightState state = flight_state(at.aircraft());
+    const double limit =
+        bank_limit_rad(stall.at_m_s(state.position_world_m.z()), state.airspeed_m_s);
+    beyond_rad = std::max(beyond_rad, std::abs(state.attitude.roll_rad) - limit);
+    return true;
+  });
+  EXPECT_NEAR(deg_from_rad(beyond_rad), 0.0, 4.0);
+  beyond_rad = -kPi;
+  const MissionPreview preview = preview_mission(setup, std::make_shared<FlatGround>(0.0)).value();
+  for (const PreviewState& state : preview.states) {
+    const double limit =
+        bank_limit_rad(stall.at_m_s(state.position_world_m.z()), state.airspeed_m_s);
+    beyond_rad = std::max(beyond_rad, std::abs(state.attitude.roll_rad) - limit);
+  }
+  EXPECT_NEAR(deg_from_rad(beyond_rad), 0.0, 1.0);
 }
 
 TEST(MissionFlight, LoitersForTurnsAndForTime) {

@@ -107,6 +107,27 @@ TEST(MissionItems, ReadCirclesUpToAHeight) {
   EXPECT_FALSE(planned.mission.items[0].turns.has_value());
 }
 
+TEST(MissionItems, WithoutAPlaceTakeTheLastOne) {
+  PlanItem speed = plan_item(178, 0.0, 0.0, 0.0F);
+  speed.parameters = {0.0F, 22.0F, -1.0F, 0.0F};
+  const PlannedMission lands =
+      plan({plan_item(16, kLatDeg + 0.01, kLonDeg, 100.0F), speed, plan_item(21, 0.0, 0.0, 0.0F)})
+          .value();
+  EXPECT_EQ(lands.mission.items[2].position_m, lands.mission.items[0].position_m);
+  // Home is not the world's origin.
+  const Eigen::Vector2d home(500.0, -300.0);
+  const PlannedMission returns = plan({plan_item(20, 0.0, 0.0, 0.0F),
+                                       plan_item(17, 0.0, 0.0, 100.0F),
+                                       plan_item(16, kLatDeg, kLonDeg + 0.01, 100.0F)},
+                                      home)
+                                     .value();
+  EXPECT_EQ(returns.mission.items[1].position_m, home);
+  EXPECT_NEAR(returns.heading_rad, 0.5 * kPi, 1e-3);
+  const auto none = plan({speed, plan_item(16, 0.0, 0.0, 100.0F)});
+  ASSERT_FALSE(none.ok());
+  EXPECT_THAT(none.error().message, HasSubstr("item 2: has no position"));
+}
+
 TEST(MissionItems, RejectWhatCannotBeFlown) {
   const auto message = [](const std::vector<PlanItem>& items) {
     const auto planned = plan(items);
@@ -120,7 +141,10 @@ TEST(MissionItems, RejectWhatCannotBeFlown) {
   local.frame = 1;
   EXPECT_THAT(message({local}), HasSubstr("frame 1"));
   EXPECT_THAT(message({plan_item(16, 0.0, 0.0, 100.0F)}), HasSubstr("no position"));
-  EXPECT_THAT(message({plan_item(16, kLatDeg, kLonDeg + 40.0, 100.0F)}), HasSubstr("east_m"));
+  // By the item's number in the file, also behind one that is left out.
+  EXPECT_THAT(
+      message({plan_item(203, 0.0, 0.0, 0.0F), plan_item(16, kLatDeg, kLonDeg + 40.0, 100.0F)}),
+      HasSubstr("mission item 2: east_m"));
 }
 
 TEST(MissionItems, FlyTheMissionThatArduPlaneFlew) {

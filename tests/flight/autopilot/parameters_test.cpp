@@ -40,6 +40,19 @@ TEST(Parameters, AreCheckedAgainstTheirLimits) {
   EXPECT_TRUE(check(Parameters{}).ok());
 }
 
+TEST(Parameters, NameNoCircleWithoutARadius) {
+  Parameters parameters;
+  for (const double radius_m : {0.0, 0.9, -0.5}) {
+    const Status status = set_parameter(parameters, "WP_LOITER_RAD", radius_m);
+    ASSERT_FALSE(status.ok()) << radius_m;
+    EXPECT_THAT(status.error().message, HasSubstr("must be in [-10000, -1] or [1, 10000]"));
+    Parameters odd;
+    odd.wp_loiter_rad = radius_m;
+    EXPECT_FALSE(check(odd).ok());
+  }
+  EXPECT_TRUE(set_parameter(parameters, "WP_LOITER_RAD", -1.0).ok());
+}
+
 TEST(Parameters, AreTunedForEveryAirframe) {
   for (const char* name : dynamics::testing::kAirframes) {
     const double cruise = dynamics::testing::cruise_m_s(name);

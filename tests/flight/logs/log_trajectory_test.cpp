@@ -143,7 +143,7 @@ TEST(BootClock, BelievesThreeStampsThatAgree) {
 }
 
 TEST(BootClock, TakesBackFirstStampsThatAreHeld) {
-  BootClock clock(FirstStamps::kHeld);
+  BootClock clock;
   EXPECT_FALSE(clock.proven());
   EXPECT_EQ(clock.take(5000 * kNsPerS), (LogTime{0, 5000 * kNsPerS}));
   EXPECT_EQ(clock.take(5001 * kNsPerS), (LogTime{0, 5001 * kNsPerS}));
@@ -156,6 +156,42 @@ TEST(BootClock, TakesBackFirstStampsThatAreHeld) {
   for (int i = 0; i < 3; ++i) (void)clock.take((9000 + i) * kNsPerS);
   for (int i = 0; i < 3; ++i) (void)clock.take(i * kNsPerS);
   EXPECT_EQ(clock.latest(), (LogTime{1, 2 * kNsPerS}));  // proven: this one is
+}
+
+TEST(BootClock, TakesBackAJumpThatNothingFollows) {
+  BootClock clock;
+  for (int i = 0; i < 5; ++i) (void)clock.take((100 + i) * kNsPerS);
+  ASSERT_TRUE(clock.proven());
+  const LogTime jumped{0, 400 * kNsPerS};
+  EXPECT_EQ(clock.take(400 * kNsPerS), jumped);
+  EXPECT_FALSE(clock.proven());
+  EXPECT_EQ(clock.take(105 * kNsPerS), std::nullopt);
+  EXPECT_EQ(clock.take(106 * kNsPerS), std::nullopt);
+  EXPECT_EQ(clock.take(107 * kNsPerS), (LogTime{0, 107 * kNsPerS}));  // no restart
+  EXPECT_TRUE(clock.proven() && clock.was_wrong(jumped));
+  EXPECT_FALSE(clock.first_were_wrong() || clock.was_wrong({0, 104 * kNsPerS}));
+  EXPECT_EQ(clock.implausible(), 3U);
+  // A gap: two more follow.
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(clock.take((400 + i) * kNsPerS));
+  EXPECT_TRUE(clock.proven());
+  EXPECT_FALSE(clock.was_wrong(jumped));
+  // A damaged stamp, and the vehicle starts again.
+  EXPECT_EQ(clock.take(500 * kNsPerS), (LogTime{0, 500 * kNsPerS}));
+  for (int i = 0; i < 3; ++i) (void)clock.take(i * kNsPerS);
+  EXPECT_EQ(clock.latest(), (LogTime{1, 2 * kNsPerS}));
+  EXPECT_TRUE(clock.was_wrong({0, 500 * kNsPerS}));
+}
+
+/// Messages are not held for ever where each comes late.
+TEST(BootClock, IsProvenBetweenStampsThatAreFarApart) {
+  BootClock clock;
+  int proven = 0;
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_TRUE(clock.take((20 * i + i % 2) * kNsPerS));
+    if (clock.proven()) ++proven;
+  }
+  EXPECT_GE(proven, 8);
+  EXPECT_EQ(clock.implausible(), 0U);
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ constexpr std::int64_t kStepNs = 20'000'000;
 /// A playback of circles on a thread of its own, which waits for its listener.
 class Player {
  public:
-  /// @param commands  at steps of the loop, once somebody listens
+  /// @param commands  at steps of the loop, once somebody listens: of a record's 2 ms or more,
+  /// since a clock that jumps is believed after three of them
   explicit Player(double length_s, std::map<int, PlaybackCommand> commands = {})
       : thread_([this, length_s, commands = std::move(commands)] { play(length_s, commands); }) {}
   ~Player() {
@@ -48,10 +49,13 @@ class Player {
     options.speed = 10.0;
     playback::PlaybackPorts ports;
     int step = 0;
+    std::chrono::steady_clock::time_point next_step;
     ports.now = [] { return std::chrono::steady_clock::now(); };
     ports.commands = [&] {
       std::vector<PlaybackCommand> due;
-      if (!output->is_heard()) return due;
+      const auto now = std::chrono::steady_clock::now();
+      if (!output->is_heard() || now < next_step) return due;
+      next_step = now + std::chrono::milliseconds(2);
       const auto found = commands.find(step++);
       if (found != commands.end()) due.push_back(found->second);
       return due;

@@ -6,87 +6,23 @@
 
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "flight/mavlink/vehicle/commands.hpp"
 #include "flight/mavlink/vehicle/message_rates.hpp"
 #include "flight/mavlink/vehicle/mission.hpp"
 #include "flight/mavlink/vehicle/parameters.hpp"
-#include "tests/flight/vehicle/cub_at_home.hpp"
+#include "tests/flight/vehicle/direct_exchange.hpp"
 
 namespace overfly::vehicle {
 namespace {
 
-using flight::mavlink::Exchange;
-using flight::mavlink::Frame;
 using flight::mavlink::HeldMessage;
 using flight::mavlink::MessageId;
-using flight::mavlink::PayloadReader;
 using flight::mavlink::PayloadWriter;
-using flight::mavlink::Version;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// A ground station that talks to the vehicle without a network, in the vehicle's time.
-class DirectExchange final : public Exchange {
- public:
-  explicit DirectExchange(const VehicleSetup& setup = cub_at_home())
-      : vehicle(SimulatedVehicle::create(setup).value()) {}
-
-  [[nodiscard]] flight::mavlink::Target target() const override { return {1, 1, 3}; }
-  [[nodiscard]] TimePoint now() const override {
-    return TimePoint(std::chrono::duration_cast<TimePoint::duration>(
-        std::chrono::nanoseconds(vehicle->report().boot_ns)));
-  }
-  [[nodiscard]] Status send(MessageId id, const PayloadWriter& payload) override {
-    pass(id, payload.bytes());
-    return {};
-  }
-  [[nodiscard]] Result<std::optional<HeldMessage>> next(TimePoint deadline) override {
-    while (inbox.empty()) {
-      if (now() >= deadline) return std::optional<HeldMessage>();
-      vehicle->step(keep_);
-    }
-    std::optional<HeldMessage> message = std::move(inbox.front());
-    inbox.pop_front();
-    return message;
-  }
-  void pass(MessageId id, std::span<const std::uint8_t> payload) {
-    vehicle->take({Version::kTwo, 0, 255, 190, static_cast<std::uint32_t>(id), false, payload},
-                  keep_);
-  }
-  /// Steps until `done` or for at most `limit_s`; messages are counted and texts kept.
-  void fly(double limit_s, const std::function<bool(const VehicleReport&)>& done) {
-    for (int i = 0; i < static_cast<int>(limit_s * 100.0); ++i) {
-      vehicle->step(keep_);
-      collect();
-      if (done(vehicle->report())) return;
-    }
-  }
-  void collect() {
-    for (const HeldMessage& message : inbox) {
-      ++counts[static_cast<MessageId>(message.id)];
-      if (message.is(MessageId::kStatusText)) texts.push_back(message.reader().text(1, 50));
-      if (message.is(MessageId::kMissionItemReached)) {
-        reached.push_back(message.reader().at<std::uint16_t>(0));
-      }
-    }
-    inbox.clear();
-  }
-
-  std::unique_ptr<SimulatedVehicle> vehicle;
-  std::deque<HeldMessage> inbox;
-  std::map<MessageId, int> counts;
-  std::vector<std::string> texts;
-  std::vector<std::uint16_t> reached;
-
- private:
-  Send keep_ = [this](MessageId id, const PayloadWriter& payload, std::uint8_t /*system*/) {
-    inbox.push_back({static_cast<std::uint32_t>(id), 1, payload.bytes()});
-  };
-};
 
 std::vector<flight::mavlink::MissionItem> pattern() {
   return flight::mavlink::read_mission_file(
@@ -105,6 +41,8 @@ TEST(SimulatedVehicle, TellsAndTakesItsParameters) {
   // Out of its limits: the vehicle keeps the old value, which the operation notices.
   EXPECT_FALSE(flight::mavlink::set_parameter(exchange, "RLL2SRV_RMAX", 5000.0).ok());
   EXPECT_EQ(flight::mavlink::read_parameter(exchange, "RLL2SRV_RMAX")->value, 55.0);
+  EXPECT_FALSE(flight::mavlink::set_parameter(exchange, "WP_LOITER_RAD", 0.0).ok());
+  EXPECT_GT(flight::mavlink::read_parameter(exchange, "WP_LOITER_RAD")->value, 30.0);
   EXPECT_FALSE(flight::mavlink::read_parameter(exchange, "NO_SUCH").ok());
 }
 

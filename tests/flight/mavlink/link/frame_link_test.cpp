@@ -200,7 +200,7 @@ TEST(FrameLink, ConnectsByTcpAndAgainAfterFailures) {
   EXPECT_THAT(link.link->counts().last_failure, HasSubstr("closed by the other side"));
   EXPECT_EQ(link.link->counts().failures, 1U);
   link.step();
-  EXPECT_EQ(link.link->counts().connections, 1U);  // not before half a second has passed
+  EXPECT_EQ(link.link->counts().failures, 1U);  // not again before half a second has passed
   link.now += milliseconds(500);
   ASSERT_TRUE(link.step_until([&] { return link.link->counts().failures == 2; }));
   EXPECT_THAT(link.link->counts().last_failure, HasSubstr("refused"));

@@ -271,29 +271,5 @@ TEST(MissionFile, NamesFileLineColumnValueAndLimit) {
   EXPECT_EQ(message_of(head + "0 1 0 16 0 0 0 0 -35.5 149 584 1\r\n"), "");
 }
 
-TEST(ParameterFile, IsReadAsAGroundStationWroteIt) {
-  OVERFLY_DATA_OR_SKIP(shared, "sitl/plane25.parm");
-  const Result<std::vector<Parameter>> all = read_parameter_file(shared);
-  ASSERT_TRUE(all.ok()) << all.error().message;
-  const auto roll = std::find_if(all->begin(), all->end(), [](const Parameter& each) {
-    return each.name == "ROLL_LIMIT_DEG";
-  });
-  ASSERT_NE(roll, all->end());
-  EXPECT_EQ(roll->value, 65.0);
-
-  overfly::testing::TemporaryFolder folder;
-  const auto file = folder.path() / "some.parm";
-  overfly::testing::write_text(file, "# comment\nA_B,1.5\nC 2\nC 3\n");
-  const Result<std::vector<Parameter>> some = read_parameter_file(file);
-  ASSERT_TRUE(some.ok()) << some.error().message;
-  ASSERT_EQ(some->size(), 2U);
-  EXPECT_EQ((*some)[1].value, 3.0);
-  overfly::testing::write_text(file, "A_B x\n");
-  EXPECT_THAT(read_parameter_file(file).error().message,
-              HasSubstr("some.parm:1: column 2 = 'x': must be a number"));
-  overfly::testing::write_text(file, "A_NAME_TOO_LONG_X 1\n");
-  EXPECT_THAT(read_parameter_file(file).error().message, HasSubstr("column 1"));
-}
-
 }  // namespace
 }  // namespace overfly::flight::mavlink
