@@ -25,11 +25,12 @@ class CameraPipeline {
   CameraPipeline(CameraPipeline&&) noexcept;
   CameraPipeline& operator=(CameraPipeline&&) noexcept;
 
-  /// Starts an image. Errors: as Renderer::render_camera; kConflict if `in_flight` images are
-  /// already begun.
+  /// Starts an image. Errors: as Renderer::render_camera, except for heights that could not be
+  /// read; kConflict if `in_flight` images are already begun.
   [[nodiscard]] Status begin(const CameraRequest& request);
   /// Returns the oldest image that was begun, with the same bytes as Renderer::render_camera.
-  /// Errors: kConflict if none is begun; kInternal if OpenGL fails.
+  /// Errors: kConflict if none is begun; kInternal if OpenGL fails; kIo if a height could not be
+  /// read.
   [[nodiscard]] Result<CameraFrame> finish();
 
  private:

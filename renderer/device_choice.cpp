@@ -19,6 +19,10 @@ Result<DeviceRequest> DeviceRequest::parse(const std::string& text) {
       return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
     });
     if (std::count(text.begin(), text.end(), ':') == 1) request.pci_address.insert(0, "0000:");
+    // The domain as the kernel writes it: nvidia-smi writes eight digits.
+    while (request.pci_address.find(':') > 4 && request.pci_address.front() == '0') {
+      request.pci_address.erase(0, 1);
+    }
   } else if (!text.empty()) {
     return Error{ErrorCode::kInvalidArgument,
                  "device \"" + text +

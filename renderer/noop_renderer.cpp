@@ -72,6 +72,7 @@ class NoopRenderer final : public Renderer {
     frame.texels_per_pixel_median = statistics.texels_per_pixel_median;
     frame.void_fraction = statistics.void_fraction;
     frame.axis_depth_m = statistics.axis_depth_m;
+    if (Status s = tiles_->status(); !s) return s.error();
     return frame;
   }
 
@@ -91,6 +92,7 @@ class NoopRenderer final : public Renderer {
                                                           : std::numeric_limits<float>::infinity();
       }
     }
+    if (Status s = tiles_->status(); !s) return s.error();
     return depth;
   }
 

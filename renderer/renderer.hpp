@@ -133,7 +133,7 @@ struct SceneContent {
     bool ghost = false;  ///< drawn translucent (an estimate)
   };
   struct Frustum {
-    PinholeCamera camera;
+    CameraModel camera;
     Pose T_world_camera;
     bool edges = true;      ///< from the optical centre to the corners on the ground
     bool footprint = true;  ///< outline of the image on the ground
@@ -185,7 +185,7 @@ class Renderer {
 
   /// Draws the camera's image.
   /// Errors: kInvalidArgument for a request refused by check_camera_request, naming the field; kIo
-  /// if a tile cannot be read; kUnsupported naming what this renderer does not support.
+  /// if a tile or a height cannot be read; kUnsupported naming what this renderer does not support.
   [[nodiscard]] virtual Result<CameraFrame> render_camera(const CameraRequest& request) = 0;
   /// Depth along the optical axis of the same image [m], each row at its mid exposure; +infinity
   /// for sky and for pixels without a ray.

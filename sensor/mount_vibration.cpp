@@ -58,12 +58,14 @@ struct CumulatedSpectrum {
   [[nodiscard]] double frequency_of(double wanted) const {
     const auto above = std::upper_bound(power.begin() + 1, power.end() - 1, wanted);
     const auto i = static_cast<std::size_t>(above - power.begin());
-    const double share = (wanted - power[i - 1]) / (power[i] - power[i - 1]);
+    const double step = power[i] - power[i - 1];  // 0 where steps are lost in the sum's rounding
+    const double share = step > 0.0 ? (wanted - power[i - 1]) / step : 0.0;
     return f_hz[i - 1] + share * (f_hz[i] - f_hz[i - 1]);
   }
 
   /// Limits of the strata in accumulated power: half of them by power, half by bandwidth, so that
-  /// both the resonance and the weak end of the band get enough tones.
+  /// both the resonance and the weak end of the band get enough tones. Strata are empty where the
+  /// power is lost in the sum's rounding. @pre total() > 0
   [[nodiscard]] std::vector<double> strata() const {
     std::vector<double> limits;
     limits.reserve(kNoiseTones + 1);
@@ -145,12 +147,14 @@ void MountVibration::add_noise(std::uint64_t seed) {
     rms[axis] =
         axis < 3 ? model_.noise_rotation_rms_rad[axis] : model_.noise_translation_rms_m[axis - 3];
   }
-  if (std::all_of(rms.begin(), rms.end(), [](double value) { return value == 0.0; })) return;
+  const bool silent = std::all_of(rms.begin(), rms.end(), [](double v) { return v == 0.0; });
+  if (silent || spectrum.total() <= 0.0) return;
   SeededSequence random(seed ^ 0x6e6f697365U);
   const std::vector<double> limits = spectrum.strata();
   for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
-    Tone tone;
     const double power = limits[i + 1] - limits[i];
+    if (power <= 0.0) continue;
+    Tone tone;
     const double f_hz = spectrum.frequency_of(limits[i] + power * random.next());
     tone.omega_rad_s = 2.0 * kPi * f_hz;
     const double share = power / (model_.noise_high_hz - model_.noise_low_hz);

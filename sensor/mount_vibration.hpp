@@ -8,9 +8,10 @@
 // The camera's disturbance has the one-sided spectrum |H(f)|^2 * (airframe's). Axes are
 // independent.
 //
-// Noise is a sum of cosines whose frequencies divide the camera's spectrum into strata of equal
-// power, one drawn in each, with uniform phases (Shinozuka, Deodatis 1991, "Simulation of
-// stochastic processes by spectral representation", Appl. Mech. Rev. 44(4)). It is stationary,
+// Noise is a sum of cosines, one drawn in each stratum of the camera's spectrum, with uniform
+// phases (Shinozuka, Deodatis 1991, "Simulation of stochastic processes by spectral
+// representation", Appl. Mech. Rev. 44(4)). Strata are equal in the mean of their share of the
+// power and their share of the bandwidth. It is stationary,
 // nearly normal, and can be evaluated at any time without the preceding times.
 #pragma once
 

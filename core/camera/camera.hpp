@@ -21,6 +21,8 @@ struct PinholeCamera {
   double cx_px = 0.0;
   double cy_px = 0.0;
 
+  bool operator==(const PinholeCamera&) const = default;
+
   /// Square pixels, centred principal point. 84.872 deg over 1280 px gives f = 700.006 px.
   /// Errors: kInvalidArgument for a size below 1 px or a field of view outside (0, pi).
   static Result<PinholeCamera> from_fov(int width_px, int height_px, double fov_rad, FovAxis axis);

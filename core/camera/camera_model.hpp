@@ -29,6 +29,7 @@ struct Distortion {
   std::array<double, 5> k{};  ///< in the model's order; unused ones are 0
 
   [[nodiscard]] bool none() const { return model == DistortionModel::kNone; }
+  bool operator==(const Distortion&) const = default;
 };
 
 /// Projection: pixel = K * distort(x / z, y / z). Immutable.
@@ -36,6 +37,7 @@ class CameraModel {
  public:
   CameraModel() = default;
   CameraModel(const PinholeCamera& pinhole, const Distortion& distortion = {});
+  bool operator==(const CameraModel&) const = default;
 
   [[nodiscard]] const PinholeCamera& pinhole() const { return pinhole_; }  ///< size and K
   [[nodiscard]] const Distortion& distortion() const { return distortion_; }

@@ -1,17 +1,12 @@
 #include "renderer/camera/air_light.hpp"
 
-#include <cmath>
+#include "renderer/tiles/srgb.hpp"
 
 namespace overfly::renderer {
 
 namespace {
 
 constexpr std::array<float, 3> kSkyRgb{0.72F, 0.80F, 0.88F};
-
-/// IEC 61966-2-1:1999, eq. 5 and 6.
-float linear(float encoded) {
-  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
 
 }  // namespace
 
@@ -25,11 +20,14 @@ std::array<float, 3> light_in(PixelFormat format, const std::array<float, 3>& en
       return encoded_rgb;
     case PixelFormat::kGreyLinear:
       // ITU-R BT.709, as tile_pixels.hpp.
-      return {0.2126F * linear(r) + 0.7152F * linear(g) + 0.0722F * linear(b), 0.0F, 0.0F};
+      return {0.2126F * light_from_srgb(r) + 0.7152F * light_from_srgb(g) +
+                  0.0722F * light_from_srgb(b),
+              0.0F,
+              0.0F};
     case PixelFormat::kRgbLinear:
       break;
   }
-  return {linear(r), linear(g), linear(b)};
+  return {light_from_srgb(r), light_from_srgb(g), light_from_srgb(b)};
 }
 
 std::array<float, 3> sky_light(const CameraRequest& request) {

@@ -201,14 +201,18 @@ ImageryQuery imagery_query(const terrain::TileSource& tiles) {
   };
 }
 
-FrameStatistics statistics_of_rays(std::vector<double> texels_per_px, int void_rays) {
+FrameStatistics statistics_of_rays(std::vector<double> texels_per_px,
+                                   int void_rays,
+                                   const terrain::TileSource& tiles) {
   FrameStatistics statistics;
   statistics.void_fraction = static_cast<double>(void_rays) / (kMeasureColumns * kMeasureRows);
   if (texels_per_px.empty()) return statistics;
+  const double real_share = tiles.grid().texel_m / tiles.real_texel_m();
   const auto middle = texels_per_px.begin() + static_cast<std::ptrdiff_t>(texels_per_px.size() / 2);
   std::nth_element(texels_per_px.begin(), middle, texels_per_px.end());
-  statistics.texels_per_pixel_median = *middle;
-  statistics.texels_per_pixel_min = *std::min_element(texels_per_px.begin(), texels_per_px.end());
+  statistics.texels_per_pixel_median = real_share * *middle;
+  statistics.texels_per_pixel_min =
+      real_share * *std::min_element(texels_per_px.begin(), texels_per_px.end());
   return statistics;
 }
 
@@ -226,19 +230,17 @@ FrameStatistics measure_frame(const GroundMesh& mesh,
                batch);
     }
   }
-  // Levels finer than the photograph are synthetic and do not count.
-  const double real_share = tiles.grid().texel_m / tiles.real_texel_m();
   std::vector<double> texels;
   int void_rays = 0;
   for (const Hit& hit : grid.hits()) {
     if (hit.batch == nullptr) continue;
     if (hit.batch->textured && has_imagery(hit.batch->texture, hit.u, hit.v)) {
-      texels.push_back(real_share * hit.texels_per_px);
+      texels.push_back(hit.texels_per_px);
     } else {
       ++void_rays;
     }
   }
-  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays);
+  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays, tiles);
   statistics.axis_depth_m = axis_depth(mesh, view, tiles);
   return statistics;
 }

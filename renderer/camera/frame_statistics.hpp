@@ -22,9 +22,12 @@ struct FrameStatistics {
 };
 
 /// Statistics from the rays that met the ground; the axis depth stays empty.
-/// @param texels_per_px  of each ray that met imagery
+/// @param texels_per_px  of level 0, of each ray that met imagery; the statistics count texels of
+///     tiles.real_texel_m(), because levels finer than the photograph are synthetic
 /// @param void_rays  number of rays that met ground without imagery
-[[nodiscard]] FrameStatistics statistics_of_rays(std::vector<double> texels_per_px, int void_rays);
+[[nodiscard]] FrameStatistics statistics_of_rays(std::vector<double> texels_per_px,
+                                                 int void_rays,
+                                                 const terrain::TileSource& tiles);
 
 /// True where a textured tile has imagery at texture coordinates (u, v).
 using ImageryQuery = std::function<bool(const terrain::TileId& tile, double u, double v)>;
@@ -34,8 +37,8 @@ using ImageryQuery = std::function<bool(const terrain::TileId& tile, double u, d
 
 /// Measures a frame on a grid of 40 x 30 rays through the drawn mesh, one at the centre of each
 /// 1/40 x 1/30 of the image: void_fraction has a step of 1/1200, and the minimum may miss details
-/// smaller than a cell. Texels per pixel are those of level 0, as the root of their number per
-/// pixel area. The axis depth is refined on the ground itself (to 1 mm).
+/// smaller than a cell. Texels per pixel are the root of their number per pixel area. The axis
+/// depth is refined on the ground itself (to 1 mm).
 /// @param mesh  of a view that sees all rays of the camera (covering_pinhole)
 /// @param camera  whose pixels are counted
 /// @pre all triangles face the camera, as build_ground_mesh ensures

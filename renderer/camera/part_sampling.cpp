@@ -5,22 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/camera/cubic_weights.hpp"
+
 namespace overfly::renderer {
 
 namespace {
 
 /// Closer to a pixel's centre than this, the pixel's value is used directly.
 constexpr double kOnCentrePx = 1e-6;
-
-/// Keys 1981, eq. 15 (a = -1/2), at distances 1 + f, f, 1 - f, 2 - f.
-std::array<float, 4> cubic_weights(double f) {
-  const double f2 = f * f;
-  const double f3 = f2 * f;
-  return {static_cast<float>(-0.5 * f3 + f2 - 0.5 * f),
-          static_cast<float>(1.5 * f3 - 2.5 * f2 + 1.0),
-          static_cast<float>(-1.5 * f3 + 2.0 * f2 + 0.5 * f),
-          static_cast<float>(0.5 * f3 - 0.5 * f2)};
-}
 
 /// Adds the interpolated value at a position to `sums`.
 void add_sample(const ImageBuffer<float>& picture,
@@ -37,8 +29,8 @@ void add_sample(const ImageBuffer<float>& picture,
   }
   const double left = std::floor(at.x());
   const double top = std::floor(at.y());
-  const std::array<float, 4> weights_x = cubic_weights(at.x() - left);
-  const std::array<float, 4> weights_y = cubic_weights(at.y() - top);
+  const std::array<float, 4> weights_x = cubic_weights<float>(at.x() - left);
+  const std::array<float, 4> weights_y = cubic_weights<float>(at.y() - top);
   std::array<float, 3> value{};
   for (int j = 0; j < 4; ++j) {
     const int y = clamped_y(static_cast<int>(top) - 1 + j);
@@ -74,14 +66,6 @@ float depth_at(const DepthImage& picture, const Eigen::Vector2d& at) {
   return static_cast<float>(1.0 / inverse);
 }
 
-bool same(const CameraModel& a, const CameraModel& b) {
-  const PinholeCamera& p = a.pinhole();
-  const PinholeCamera& q = b.pinhole();
-  return p.width_px == q.width_px && p.height_px == q.height_px && p.fx_px == q.fx_px &&
-         p.fy_px == q.fy_px && p.cx_px == q.cx_px && p.cy_px == q.cy_px &&
-         a.distortion().model == b.distortion().model && a.distortion().k == b.distortion().k;
-}
-
 }  // namespace
 
 TapRays::TapRays(const CameraModel& camera, RenderQuality quality)
@@ -101,7 +85,7 @@ TapRays::TapRays(const CameraModel& camera, RenderQuality quality)
 }
 
 bool TapRays::fits(const CameraModel& camera, RenderQuality quality) const {
-  return quality == quality_ && same(camera, camera_);
+  return quality == quality_ && camera == camera_;
 }
 
 Eigen::Vector3d TapRays::ray(int x, int y, int tap) const {

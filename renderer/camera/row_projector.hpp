@@ -28,7 +28,6 @@ class RowProjector {
   [[nodiscard]] std::optional<ProjectedPoint> project(const Eigen::Vector3d& p_world) const;
   /// T_world_camera while a row is exposed.
   [[nodiscard]] const Pose& T_world_camera(int row) const;
-  [[nodiscard]] const CameraModel& camera() const { return camera_; }
   /// True if the pixel's centre lies in the image, [0, width - 1] x [0, height - 1].
   [[nodiscard]] bool inside(const Eigen::Vector2d& pixel) const;
 

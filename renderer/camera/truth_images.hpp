@@ -28,7 +28,6 @@ class PixelRays {
 
   /// Direction with z = 1 through a pixel's centre, camera frame; NaN if the lens has none.
   [[nodiscard]] Eigen::Vector3d at(int x, int y) const;
-  [[nodiscard]] const CameraModel& camera() const { return camera_; }
 
  private:
   CameraModel camera_;

@@ -70,14 +70,16 @@ class EglRenderer final : public Renderer {
     if (Status s = check_camera_request(tiles_, request); !s) return s;
     if (Status s = context_->make_current(); !s) return s;
     ahead_.expect(request);
-    if (Status s = queue_.begin(camera_, request, frame_of(request)); !s) return s;
-    return tiles_.status();
+    return queue_.begin(camera_, request, frame_of(request));
   }
 
   /// As CameraPipeline::finish.
   Result<CameraFrame> finish() {
     if (Status s = context_->make_current(); !s) return s.error();
-    return queue_.finish();
+    Result<CameraFrame> frame = queue_.finish();
+    if (!frame.ok()) return frame;
+    if (Status s = tiles_.status(); !s) return s.error();
+    return frame;
   }
 
   Result<DepthImage> render_depth(const CameraRequest& request) override {

@@ -98,6 +98,7 @@ vec2 distorted(vec2 m) {
     return m * (angle / r);
   }
   if (lens == 3) {
+    if (abs(lens_k[0]) < 1e-6) return m;
     float a = 2.0 * tan(0.5 * lens_k[0]);
     return m * (r < 1e-6 ? a / lens_k[0] : atan(a * r) / (lens_k[0] * r));
   }

@@ -176,12 +176,14 @@ Result<Image> ScenePass::draw(const SceneContent& content,
   }
 
   if (Status status = prepare_target(view.camera); !status) return status.error();
+  glDepthMask(GL_TRUE);
+  glClearDepth(0.0);
+  // Beyond the reach of the ground (kMaxReachM) there is haze.
+  glClearColor(kHazeRgb[0], kHazeRgb[1], kHazeRgb[2], 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (sees_sky(view)) draw_sky(view);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  glDepthMask(GL_TRUE);
-  glClearDepth(0.0);
-  glClear(GL_DEPTH_BUFFER_BIT);
   const GroundMesh mesh = build_ground_mesh(patches, view, kSceneMesh);
   GroundLook look;
   look.output = GroundLook::Output::kHazyColour;
@@ -191,8 +193,10 @@ Result<Image> ScenePass::draw(const SceneContent& content,
     projection_.prepare(*content.projection, view);
     look.projection = &projection_;
   }
-  const Status drawn = ground.draw(mesh, view.camera, textures, look);
-  if (!drawn) return drawn.error();
+  if (Status drawn = ground.draw(mesh, view.camera, textures, look); !drawn) {
+    (void)textures.end_view();
+    return drawn.error();
+  }
   draw_triangles(solid, false);
   draw_triangles(translucent, true);
   Image image;

@@ -48,7 +48,6 @@ class TileTextures {
   int end_view();
 
   [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }
-  [[nodiscard]] const std::shared_ptr<TileStore>& store() const { return store_; }
 
  private:
   using Key = std::pair<terrain::TileId, PixelFormat>;

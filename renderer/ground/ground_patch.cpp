@@ -103,18 +103,17 @@ std::shared_ptr<GroundPatch> GroundPatchStore::outline(const TileId& id) {
   std::shared_ptr<GroundPatch> patch;
   {
     const std::lock_guard lock(mutex_);
-    const auto [entry, is_new] = patches_.try_emplace(id);
-    if (is_new) {
-      entry->second.patch = std::make_shared<GroundPatch>();
-      entry->second.patch->id = id;
-      order_.push_front(id);
-      entry->second.place = order_.begin();
-      entry->second.bytes = kOutlineBytes;
-      held_bytes_ += kOutlineBytes;
+    if (const auto known = patches_.find(id); known != patches_.end()) {
+      order_.splice(order_.begin(), order_, known->second.place);
+      patch = known->second.patch;
     } else {
-      order_.splice(order_.begin(), order_, entry->second.place);
+      patch = std::make_shared<GroundPatch>();
+      patch->id = id;
+      std::list<TileId> place{id};
+      patches_.emplace(id, Entry{patch, kOutlineBytes, place.begin()});
+      order_.splice(order_.begin(), place);
+      held_bytes_ += kOutlineBytes;
     }
-    patch = entry->second.patch;
   }
   std::call_once(patch->outlined, [&] { make_outline(*patch); });
   return patch;
@@ -171,6 +170,7 @@ void GroundPatchStore::sample(GroundPatch& patch) {
     for (int t = 0; t <= kLog2PatchCells; ++t) {
       const int cells = 1 << t;
       std::vector<float>& errors = patch.square_error_m[t];
+      errors.clear();  // of an attempt that an exception ended
       for (int row = 0; row < kPatchCells; row += cells) {
         for (int column = 0; column < kPatchCells; column += cells) {
           errors.push_back(static_cast<float>(square_error_m(patch, fine, column, row, cells)));

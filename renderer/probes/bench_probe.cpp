@@ -13,7 +13,7 @@ namespace {
 
 double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
-/// The costs of the counted frames, in flight order.
+/// The costs of repeated calls, in the order of the calls.
 struct Series {
   std::vector<double> cpu_ms, wall_ms;
 

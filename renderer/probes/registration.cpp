@@ -9,19 +9,10 @@
 #include <vector>
 
 #include "core/algebra/decompositions.hpp"
+#include "renderer/camera/cubic_weights.hpp"
 
 namespace overfly::renderer {
 namespace {
-
-/// Weights of the four samples around a position, `t` in [0, 1) after the second.
-std::array<double, 4> keys_weights(double t) {
-  const double t2 = t * t;
-  const double t3 = t2 * t;
-  return {0.5 * (-t3 + 2.0 * t2 - t),
-          0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
-          0.5 * (-3.0 * t3 + 4.0 * t2 + t),
-          0.5 * (t3 - t2)};
-}
 
 /// Empty if the sixteen samples do not all lie in the image.
 std::optional<double> cubic_sample(const Image& image, double x, double y) {
@@ -30,8 +21,8 @@ std::optional<double> cubic_sample(const Image& image, double x, double y) {
   if (!(x0 >= 1.0 && y0 >= 1.0 && x0 < image.width_px - 2 && y0 < image.height_px - 2)) {
     return std::nullopt;
   }
-  const std::array<double, 4> across = keys_weights(x - x0);
-  const std::array<double, 4> down = keys_weights(y - y0);
+  const std::array<double, 4> across = cubic_weights<double>(x - x0);
+  const std::array<double, 4> down = cubic_weights<double>(y - y0);
   double sum = 0.0;
   for (int j = 0; j < 4; ++j) {
     const std::uint8_t* row = &image.at(static_cast<int>(x0) - 1, static_cast<int>(y0) - 1 + j);

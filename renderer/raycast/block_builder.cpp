@@ -50,7 +50,7 @@ Node cast_node(const BlockSettings& settings,
   return node;
 }
 
-/// The patch of `seen` around a pixel, with precomputed data for its alignment.
+/// A rectangle of pixels and the rays through its corners.
 struct Patch {
   int x = 0, y = 0, columns = 0, rows = 0;  // pixels
   std::array<const Node*, 4> corners{};     // upper left, upper right, lower left, lower right

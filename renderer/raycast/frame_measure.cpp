@@ -37,7 +37,7 @@ FrameStatistics measure_rays(const CameraModel& camera,
                              const ShutterPoses& poses,
                              const Pose& T_world_camera,
                              const GroundCaster& caster,
-                             const HeightQuery& ground,
+                             const terrain::TileSource& tiles,
                              const ImageryAt& has_imagery,
                              WorkerPool& pool) {
   const PinholeCamera& size = camera.pinhole();
@@ -73,8 +73,8 @@ FrameStatistics measure_rays(const CameraModel& camera,
     texels.insert(texels.end(), row.texels.begin(), row.texels.end());
     void_rays += row.void_rays;
   }
-  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays);
-  statistics.axis_depth_m = cast_axis_depth(T_world_camera, caster, ground);
+  FrameStatistics statistics = statistics_of_rays(std::move(texels), void_rays, tiles);
+  statistics.axis_depth_m = cast_axis_depth(T_world_camera, caster, tiles);
   return statistics;
 }
 

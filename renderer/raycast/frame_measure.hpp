@@ -22,7 +22,7 @@ using ImageryAt = std::function<bool(double u, double v, double lod)>;
                                            const ShutterPoses& poses,
                                            const Pose& T_world_camera,
                                            const GroundCaster& caster,
-                                           const HeightQuery& ground,
+                                           const terrain::TileSource& tiles,
                                            const ImageryAt& has_imagery,
                                            WorkerPool& pool);
 

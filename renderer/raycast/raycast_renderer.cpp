@@ -19,12 +19,16 @@ class RaycastRenderer final : public Renderer {
 
   Result<CameraFrame> render_camera(const CameraRequest& request) override {
     if (Status status = check_camera_request(*tiles_, request); !status) return status.error();
-    return caster_.draw(request);
+    Result<CameraFrame> frame = caster_.draw(request);
+    if (Status status = tiles_->status(); !status) return status.error();
+    return frame;
   }
 
   Result<DepthImage> render_depth(const CameraRequest& request) override {
     if (Status status = check_camera_request(*tiles_, request); !status) return status.error();
-    return caster_.depth(request);
+    DepthImage depth = caster_.depth(request);
+    if (Status status = tiles_->status(); !status) return status.error();
+    return depth;
   }
 
   Result<Image> render_scene(const SceneView& /*view*/, const SceneContent& /*content*/) override {

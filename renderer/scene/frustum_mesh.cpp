@@ -31,40 +31,73 @@ std::vector<Eigen::Vector2d> border_pixels(const PinholeCamera& camera) {
   return pixels;
 }
 
+struct BorderRay {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // world frame, unit length
+  std::optional<Eigen::Vector3d> ground;                // where it meets the ground, world frame
+};
+
+/// The rays of border_pixels(); empty where the lens has none.
+std::vector<std::optional<BorderRay>> border_rays(const SceneContent::Frustum& frustum,
+                                                  const HeightQuery& ground) {
+  const Pose& pose = frustum.T_world_camera;
+  std::vector<std::optional<BorderRay>> rays;
+  for (const Eigen::Vector2d& pixel : border_pixels(frustum.camera.pinhole())) {
+    std::optional<BorderRay>& ray = rays.emplace_back();
+    const std::optional<Eigen::Vector3d> seen = frustum.camera.ray(pixel);
+    if (!seen) continue;
+    const Eigen::Vector3d direction = (pose.rotation * *seen).normalized();
+    ray = {direction, cast_to_ground(ground, pose.translation, direction, kMaxRangeM)};
+  }
+  return rays;
+}
+
+void add_edges(const Pose& T_world_camera,
+               const std::vector<std::optional<BorderRay>>& rays,
+               int rays_per_face,
+               SceneTriangles& triangles) {
+  const View& view = triangles.view();
+  const Eigen::Vector3d& apex_world = T_world_camera.translation;
+  const Eigen::Vector3d apex = view.camera_from_world(apex_world);
+  double farthest_m = 0.0;
+  for (const auto& ray : rays) {
+    if (ray && ray->ground) farthest_m = std::max(farthest_m, (*ray->ground - apex_world).norm());
+  }
+  // Rays to the sky are as long as the longest of the others.
+  const auto end_of = [&](const BorderRay& ray) -> Eigen::Vector3d {
+    if (ray.ground) return view.camera_from_world(*ray.ground);
+    return view.camera_from_world(apex_world + std::max(farthest_m, 100.0) * ray.direction);
+  };
+  for (std::size_t i = 0; i < rays.size(); i += rays_per_face) {
+    const auto& next = rays[(i + rays_per_face) % rays.size()];
+    if (!rays[i]) continue;
+    const Eigen::Vector3d end = end_of(*rays[i]);
+    if (i % kRaysPerSide == 0) triangles.add_line(apex, end, 1.6, kFrustumColour);
+    if (next) triangles.add_triangle(apex, end, end_of(*next), kFaceColour);
+  }
+}
+
 }  // namespace
 
 void add_frustum(const SceneContent::Frustum& frustum,
                  const HeightQuery& ground,
                  SceneTriangles& triangles) {
-  const Pose& pose = frustum.T_world_camera;
   const View& view = triangles.view();
-  std::vector<std::optional<Eigen::Vector3d>> hits;
-  double farthest_m = 0.0;
-  for (const Eigen::Vector2d& pixel : border_pixels(frustum.camera)) {
-    const Eigen::Vector3d direction = (pose.rotation * frustum.camera.ray(pixel)).normalized();
-    hits.push_back(cast_to_ground(ground, pose.translation, direction, kMaxRangeM));
-    if (hits.back()) farthest_m = std::max(farthest_m, (*hits.back() - pose.translation).norm());
-  }
-  const Eigen::Vector3d apex = view.camera_from_world(pose.translation);
-  const std::vector<Eigen::Vector2d> pixels = border_pixels(frustum.camera);
-  // Rays to the sky are as long as the longest of the others.
-  const auto end_of = [&](std::size_t i) -> Eigen::Vector3d {
-    if (hits[i]) return view.camera_from_world(*hits[i]);
-    const Eigen::Vector3d direction = (pose.rotation * frustum.camera.ray(pixels[i])).normalized();
-    return view.camera_from_world(pose.translation + std::max(farthest_m, 100.0) * direction);
-  };
-  for (std::size_t corner = 0; frustum.edges && corner < 4; ++corner) {
-    const Eigen::Vector3d end = end_of(corner * kRaysPerSide);
-    triangles.add_line(apex, end, 1.6, kFrustumColour);
-    triangles.add_triangle(apex, end, end_of((corner + 1) % 4 * kRaysPerSide), kFaceColour);
+  const std::vector<std::optional<BorderRay>> rays = border_rays(frustum, ground);
+  if (frustum.edges) {
+    // The rays of a side lie in a plane, unless a lens bends them.
+    const int rays_per_face = frustum.camera.distortion().none() ? kRaysPerSide : 1;
+    add_edges(frustum.T_world_camera, rays, rays_per_face, triangles);
   }
   if (!frustum.footprint) return;
   triangles.pull_nearer(0.01);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const auto& next = hits[(i + 1) % hits.size()];
-    if (!hits[i] || !next) continue;
-    triangles.add_line(
-        view.camera_from_world(*hits[i]), view.camera_from_world(*next), 2.4, kFrustumColour);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto& here = rays[i];
+    const auto& next = rays[(i + 1) % rays.size()];
+    if (!here || !next || !here->ground || !next->ground) continue;
+    triangles.add_line(view.camera_from_world(*here->ground),
+                       view.camera_from_world(*next->ground),
+                       2.4,
+                       kFrustumColour);
   }
   triangles.pull_nearer(0.0);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "renderer/tiles/srgb.hpp"
+
 namespace overfly::renderer {
 
 namespace {
@@ -73,11 +75,8 @@ std::vector<ImageBuffer<T>> chain(ImageBuffer<T> level_0) {
 std::array<std::uint16_t, 256> make_linear_from_srgb() {
   std::array<std::uint16_t, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const double encoded = static_cast<double>(i) / 255.0;
-    // IEC 61966-2-1:1999, eq. 5 and 6.
-    const double linear =
-        encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-    table[i] = static_cast<std::uint16_t>(std::lround(65535.0 * linear));
+    const double light = light_from_srgb(static_cast<double>(i) / 255.0);
+    table[i] = static_cast<std::uint16_t>(std::lround(65535.0 * light));
   }
   return table;
 }

@@ -108,7 +108,7 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
           &places);
   if (settings.show.points) content.points = map_points(request, *timeline, ribbons, row);
   if (settings.show.frustum || settings.show.footprint) {
-    content.frustum = renderer::SceneContent::Frustum{timeline->main_camera().model.pinhole(),
+    content.frustum = renderer::SceneContent::Frustum{timeline->main_camera().model,
                                                       row.T_world_camera,
                                                       settings.show.frustum && !onboard,
                                                       settings.show.footprint};
@@ -198,6 +198,9 @@ const ViewRibbons* ViewPainter::compared_ribbons(const std::shared_ptr<RunTimeli
 
 ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
                                      const std::string& alignment) {
+  ribbons_.remove_if([&](const ViewRibbons& ribbons) {
+    return ribbons.timeline() == timeline && ribbons.is_outdated();
+  });
   const auto known =
       std::find_if(ribbons_.begin(), ribbons_.end(), [&](const ViewRibbons& ribbons) {
         return ribbons.timeline() == timeline && ribbons.alignment() == alignment;

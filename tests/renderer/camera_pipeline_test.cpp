@@ -71,6 +71,20 @@ TEST_F(Pipeline, GivesTheSameBytesInOrder) {
   }
 }
 
+TEST_F(Pipeline, FinishReportsHeightsThatCouldNotBeRead) {
+  overfly::testing::ProceduralGround::Options options;
+  options.paint = [](double, double) { return 90.0; };
+  options.heights_fail = true;
+  auto pipeline =
+      CameraPipeline::create(std::make_shared<overfly::testing::ProceduralGround>(options), {}, 2);
+  ASSERT_TRUE(pipeline.ok());
+  ASSERT_TRUE(pipeline->begin(request(0)).ok());
+  const auto frame = pipeline->finish();
+  ASSERT_FALSE(frame.ok());
+  EXPECT_EQ(frame.error().code, ErrorCode::kIo);
+  EXPECT_EQ(pipeline->finish().error().code, ErrorCode::kConflict) << "as many as were begun";
+}
+
 TEST_F(Pipeline, RefusesMoreThanFitAndLessThanOne) {
   auto pipeline = CameraPipeline::create(tiles_, {}, 1);
   ASSERT_TRUE(pipeline.ok());

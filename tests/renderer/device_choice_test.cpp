@@ -32,6 +32,8 @@ TEST(DeviceChoice, ReadsIndexAddressAndSoftware) {
   EXPECT_EQ(DeviceRequest::parse("12").value().index, 12);
   EXPECT_EQ(DeviceRequest::parse("0000:3B:00.1").value().pci_address, "0000:3b:00.1");
   EXPECT_EQ(DeviceRequest::parse("3b:00.0").value().pci_address, "0000:3b:00.0");
+  EXPECT_EQ(DeviceRequest::parse("00000000:01:00.0").value().pci_address, "0000:01:00.0");
+  EXPECT_EQ(DeviceRequest::parse("00010000:01:00.0").value().pci_address, "10000:01:00.0");
   EXPECT_TRUE(DeviceRequest::parse("software").value().software);
 }
 
@@ -49,6 +51,7 @@ TEST(DeviceChoice, TriesGpusFirstAndSoftwareLast) { EXPECT_EQ(order(""), (Order{
 TEST(DeviceChoice, TriesTheDeviceAskedForThenSoftware) {
   EXPECT_EQ(order("2"), (Order{2, 1, 3}));
   EXPECT_EQ(order("82:00.0"), (Order{2, 1, 3}));
+  EXPECT_EQ(order("00000000:82:00.0"), (Order{2, 1, 3})) << "as nvidia-smi writes it";
   EXPECT_EQ(order("7"), (Order{1, 3})) << "no such device";
   EXPECT_EQ(order("software"), (Order{1, 3})) << "never a GPU";
 }

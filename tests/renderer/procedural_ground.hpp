@@ -31,12 +31,17 @@ class ProceduralGround final : public terrain::TileSource {
     int failing_level = -1;      ///< reading tiles of this level fails
     double centre_east_m = 0.0;  ///< where the imagery's middle lies
     bool curved = true;          ///< false: the earth is a plane
+    double real_texel_m = 0.0;   ///< 0 = texel_m; finer levels than this are synthetic
+    bool heights_fail = false;   ///< a height could not be read
   };
 
   explicit ProceduralGround(Options options);
 
   [[nodiscard]] double ground_up_m(double east_m, double north_m) const override;
   [[nodiscard]] const terrain::TileGrid& grid() const override { return grid_; }
+  [[nodiscard]] double real_texel_m() const override {
+    return options_.real_texel_m > 0.0 ? options_.real_texel_m : grid_.texel_m;
+  }
   [[nodiscard]] terrain::TileCoverage coverage(const terrain::TileId& id) const override;
   [[nodiscard]] Result<terrain::Tile> read_tile(
       const terrain::TileId& id, const terrain::Cancelled& /*cancelled*/) const override;
@@ -46,6 +51,10 @@ class ProceduralGround final : public terrain::TileSource {
   [[nodiscard]] const LocalFrame& frame() const override { return frame_; }
   [[nodiscard]] Eigen::Vector2d height_range_m() const override { return options_.height_range_m; }
   [[nodiscard]] std::string attribution() const override { return "painted by the test"; }
+  [[nodiscard]] Status status() const override {
+    if (!options_.heights_fail) return {};
+    return Error{ErrorCode::kIo, "heights.tif: the disk is gone"};
+  }
 
   /// Tiles read so far.
   [[nodiscard]] int tiles_read() const { return tiles_read_; }

@@ -110,6 +110,33 @@ TEST_P(RendererContract, TexelsPerPixelFollowHeightAndImagery) {
   }
 }
 
+TEST_P(RendererContract, TexelsPerPixelLeaveOutSyntheticLevels) {
+  // Two levels of synthetic detail above a photograph of 2 m.
+  ProceduralGround::Options options;
+  options.paint = overfly::testing::natural_paint;
+  options.real_texel_m = 2.0;
+  const auto detailed = create(std::make_shared<ProceduralGround>(options));
+  const auto frame =
+      detailed->render_camera(camera_, nadir_pose(0, 0, 200.0), 0, PixelFormat::kGrey8);
+  ASSERT_TRUE(frame.ok());
+  const double expected = 200.0 / camera_.fx_px / 2.0;
+  EXPECT_NEAR(frame->texels_per_pixel_median, expected, 0.01 * expected);
+  EXPECT_NEAR(frame->texels_per_pixel_min, expected, 0.01 * expected);
+}
+
+TEST_P(RendererContract, ReportsHeightsThatCouldNotBeRead) {
+  ProceduralGround::Options options;
+  options.paint = overfly::testing::natural_paint;
+  options.heights_fail = true;
+  const auto broken = create(std::make_shared<ProceduralGround>(options));
+  const auto frame = broken->render_camera(camera_, nadir_pose(0, 0, 200), 0, PixelFormat::kGrey8);
+  ASSERT_FALSE(frame.ok());
+  EXPECT_EQ(frame.error().code, ErrorCode::kIo);
+  const auto depth = broken->render_depth(camera_, nadir_pose(0, 0, 200));
+  ASSERT_FALSE(depth.ok());
+  EXPECT_EQ(depth.error().code, ErrorCode::kIo);
+}
+
 TEST_P(RendererContract, VoidFractionIsHalfAtTheEdgeOfTheImagery) {
   ProceduralGround::Options options;
   options.paint = overfly::testing::natural_paint;

@@ -216,6 +216,20 @@ TEST(MountVibration, TheSameSeedShakesTheSame) {
   EXPECT_EQ(made(VibrationModel{}).disturbance(123), (std::array<double, 6>{}));
 }
 
+TEST(MountVibration, IsFiniteWhereMostOfTheBandIsBlocked) {
+  VibrationModel model = shaken_mount();
+  model.noise_low_hz = 0.01;
+  model.noise_high_hz = 2000.0;
+  for (const double natural_hz : {0.2, 1e-3, 1e-300}) {
+    model.mount_natural_hz = natural_hz;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Pose pose = made(model, seed).T_mount_camera(1'234'567'890);
+      EXPECT_TRUE(pose.translation.allFinite()) << natural_hz;
+      EXPECT_TRUE(pose.rotation.coeffs().allFinite()) << natural_hz;
+    }
+  }
+}
+
 TEST(MountVibration, NamesTheFieldThatIsOutOfItsLimits) {
   const auto message = [](const std::function<void(VibrationModel&)>& change) {
     VibrationModel model = shaken_mount();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "renderer/ground/ground_reach.hpp"
 
@@ -26,17 +27,17 @@ HeightField::HeightField(std::shared_ptr<const terrain::TileSource> tiles, std::
     : tiles_(std::move(tiles)), map_(TexelMap::of(*tiles_)), max_tiles_(max_tiles) {}
 
 const HeightTile& HeightField::tile(const HeightTileId& id) {
-  const auto [place, added] = kept_.try_emplace(id);
-  Kept& kept = place->second;
-  if (added) {
-    kept.tile = std::make_unique<HeightTile>(HeightTile::sample(id, map_));
-    order_.push_front(id);
-    kept.place = order_.begin();
+  auto known = kept_.find(id);
+  if (known != kept_.end()) {
+    order_.splice(order_.begin(), order_, known->second.place);
   } else {
-    order_.splice(order_.begin(), order_, kept.place);
+    auto sampled = std::make_unique<HeightTile>(HeightTile::sample(id, map_));
+    Order place{id};
+    known = kept_.emplace(id, Kept{std::move(sampled), place.begin()}).first;
+    order_.splice(order_.begin(), place);
   }
-  kept.tile->last_use = view_;
-  return *kept.tile;
+  known->second.tile->last_use = view_;
+  return *known->second.tile;
 }
 
 bool HeightField::outside(const HeightTile& tile, const ViewSweep& view) const {

@@ -46,15 +46,6 @@ RayGrid::RayGrid(const CameraModel& camera)
   }
 }
 
-bool RayGrid::is_of(const CameraModel& camera) const {
-  const PinholeCamera& a = camera_.pinhole();
-  const PinholeCamera& b = camera.pinhole();
-  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px &&
-         a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px &&
-         camera_.distortion().model == camera.distortion().model &&
-         camera_.distortion().k == camera.distortion().k;
-}
-
 void RayGrid::lay_out(int cell_px) {
   cell_px_ = cell_px;
   columns_ = (width_px_ + cell_px - 1) / cell_px;

@@ -21,7 +21,7 @@ class RayGrid {
  public:
   explicit RayGrid(const CameraModel& camera);
 
-  [[nodiscard]] bool is_of(const CameraModel& camera) const;
+  [[nodiscard]] bool is_of(const CameraModel& camera) const { return camera == camera_; }
   [[nodiscard]] int cell_px() const { return cell_px_; }
   [[nodiscard]] int columns() const { return columns_; }  ///< of cells
   [[nodiscard]] int rows() const { return rows_; }

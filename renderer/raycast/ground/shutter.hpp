@@ -26,11 +26,9 @@ class ShutterPoses {
   [[nodiscard]] const RowPose& at(double row) const {
     return poses_.size() == 1 ? poses_.front() : poses_[static_cast<std::size_t>(2.0 * row + 1.0)];
   }
-  /// One per row, or one for all rows.
-  [[nodiscard]] const std::vector<RowPose>& all() const { return poses_; }
 
  private:
-  std::vector<RowPose> poses_;
+  std::vector<RowPose> poses_;  ///< every half row from -1/2 on, or one for all rows
 };
 
 }  // namespace overfly::renderer::raycast

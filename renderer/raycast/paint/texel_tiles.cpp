@@ -19,9 +19,10 @@ std::shared_ptr<const PackedTile> TexelTiles::held(const Key& key) {
 
 std::shared_ptr<const PackedTile> TexelTiles::keep(const Key& key, const TilePixels& pixels) {
   auto texels = std::make_shared<const PackedTile>(PackedTile::from(pixels));
+  Order place{key};
+  entries_.emplace(key, Entry{texels, place.begin()});
+  order_.splice(order_.begin(), place);
   held_bytes_ += texels->bytes();
-  order_.push_front(key);
-  entries_.emplace(key, Entry{texels, order_.begin()});
   return texels;
 }
 

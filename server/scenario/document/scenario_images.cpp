@@ -42,14 +42,7 @@ Result<std::size_t> counterpart(const Json& name,
     const bool same_place =
         (other.T_body_camera.translation - real.T_body_camera.translation).norm() < 1e-9 &&
         rotation_angle_rad(other.T_body_camera.rotation, real.T_body_camera.rotation) < 1e-9;
-    const PinholeCamera& a = other.model.pinhole();
-    const PinholeCamera& b = real.model.pinhole();
-    const bool same_model = a.width_px == b.width_px && a.height_px == b.height_px &&
-                            a.fx_px == b.fx_px && a.fy_px == b.fy_px && a.cx_px == b.cx_px &&
-                            a.cy_px == b.cy_px &&
-                            other.model.distortion().model == real.model.distortion().model &&
-                            other.model.distortion().k == real.model.distortion().k;
-    if (same_place && same_model) return i;
+    if (same_place && other.model == real.model) return i;
     return bad_field(path, name, "name a camera of the same model and mount");
   }
   return bad_field(path, name, "name another camera of the scenario");

@@ -113,11 +113,11 @@ INSTANTIATE_TEST_SUITE_P(Measures,
                          [](const auto& suite) { return std::string(suite.param); });
 
 TEST(FrameStatistics, TakesTheMiddleAndTheLeastOfItsRays) {
-  const FrameStatistics odd = statistics_of_rays({5.0, 1.0, 3.0, 2.0, 4.0}, 0);
+  const FrameStatistics odd = statistics_of_rays({5.0, 1.0, 3.0, 2.0, 4.0}, 0, *level_ground());
   EXPECT_EQ(odd.texels_per_pixel_median, 3.0);
   EXPECT_EQ(odd.texels_per_pixel_min, 1.0);
   EXPECT_EQ(odd.void_fraction, 0.0);
-  const FrameStatistics none = statistics_of_rays({}, 300);
+  const FrameStatistics none = statistics_of_rays({}, 300, *level_ground());
   EXPECT_EQ(none.texels_per_pixel_median, 0.0);
   EXPECT_EQ(none.texels_per_pixel_min, 0.0);
   EXPECT_EQ(none.void_fraction, 0.25);

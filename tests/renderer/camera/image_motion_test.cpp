@@ -131,6 +131,55 @@ TEST(ExposureInstants, AreTheMostForStreaksOfAnyLength) {
   EXPECT_EQ(exposure_instants(request, kFlat).size(), std::size_t{kMaxInstants});
 }
 
+/// A request of 20 ms whose camera moves to the east by `east_m(t_s)`, t from the middle, with
+/// poses `raster_ns` apart.
+template <typename East>
+CameraRequest eastward_request(const East& east_m, std::int64_t raster_ns) {
+  std::vector<StampedPose> poses;
+  for (std::int64_t t_ns = -10'000'000; t_ns <= 10'000'000; t_ns += raster_ns) {
+    const double t_s = 1e-9 * static_cast<double>(t_ns);
+    poses.push_back({50'000'000 + t_ns, pose_over_flat({}, {east_m(t_s), 0.0, 110.0})});
+  }
+  CameraRequest request = exposed_request(poses.front().pose, poses.back().pose);
+  request.T_world_camera = CameraMotion::from_poses(poses).value();
+  return request;
+}
+
+/// 8 periods in 20 ms: the even pieces of an exposure begin and end at the same place.
+double shaken_east_m(double t_s) { return std::sin(2.0 * kPi * 400.0 * t_s); }
+
+TEST(ExposureInstants, CountAVibrationThatIsFasterThanThePieces) {
+  // 4 m and 8 px a period, of which ten poses miss up to 5 %.
+  const std::size_t instants =
+      exposure_instants(eastward_request(shaken_east_m, 250'000), kFlat).size();
+  EXPECT_GE(instants, 61U + 1U);
+  EXPECT_LE(instants, 64U + 1U);
+}
+
+TEST(ExposureInstants, AreTheSameForSmoothMotionHoweverManyPoses) {
+  // Turns back in the middle of a piece, which that piece does not see: 19.9 instead of 20.2 px.
+  const auto east_m = [](double t_s) { return 49750.0 * (t_s - 1.25e-3) * (t_s - 1.25e-3); };
+  for (const std::int64_t raster_ns : {2'500'000, 1'250'000, 100'000}) {
+    const auto instants = exposure_instants(eastward_request(east_m, raster_ns), kFlat);
+    EXPECT_EQ(instants.size(), 20U + 1U) << raster_ns;
+  }
+}
+
+TEST(RowsOfOnePose, FollowAVibrationThatIsFasterThanThePieces) {
+  const auto rows = [](double amplitude_m) {
+    CameraRequest request =
+        eastward_request([&](double t_s) { return amplitude_m * shaken_east_m(t_s); }, 250'000);
+    request.exposure_ns = 0;
+    request.readout_ns = 20'000'000;
+    return rows_of_one_pose(request, kFlat);
+  };
+  // Sixteen pieces are half periods, which begin and end at zero. Fastest between the pose at zero
+  // and the next one, 36 deg later: in 250 us, the time of three rows.
+  const double px_per_row = 2.0 * 0.01 * std::sin(kPi / 5.0) / 3.0;
+  EXPECT_EQ(rows(0.01), static_cast<int>(0.1 / px_per_row));
+  EXPECT_EQ(rows(1.0), 1);
+}
+
 TEST(RowsOfOnePose, MoveLessThanATwentiethOfAPixel) {
   const auto rows = [](double way_m, std::int64_t readout_ns) {
     CameraRequest request = exposed_request(pose_over_flat({}, {0.0, 0.0, 110.0}),

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <new>
 
 #include "renderer/raycast/ground/ground_caster.hpp"
 #include "renderer/raycast/ground/view_sweep.hpp"
@@ -15,9 +17,10 @@ namespace {
 
 using overfly::testing::hills_m;
 
-std::shared_ptr<const terrain::TileSource> hills() {
+std::shared_ptr<const terrain::TileSource> hills(
+    const std::function<double(double, double)>& height_m = hills_m) {
   overfly::testing::ProceduralGround::Options options;
-  options.height_m = hills_m;
+  options.height_m = height_m;
   options.height_range_m = {-20.0, 20.0};
   options.paint = overfly::testing::natural_paint;
   return std::make_shared<overfly::testing::ProceduralGround>(options);
@@ -75,6 +78,23 @@ TEST(HeightField, PreparesALaterViewOneTileAtATime) {
   EXPECT_GT(prepared, first);
   (void)field.select(later);
   EXPECT_EQ(field.held_tiles(), prepared) << "the view itself found tiles missing";
+}
+
+TEST(HeightField, IsCompleteAfterMemoryRanOut) {
+  bool out_of_memory = false;
+  HeightField field(hills([&](double east_m, double north_m) {
+    if (out_of_memory) throw std::bad_alloc();
+    return hills_m(east_m, north_m);
+  }));
+  const CameraRequest request = request_at(0.0);
+  const ViewSweep sweep = sweep_of(request, RayGrid(request.camera));
+  out_of_memory = true;
+  EXPECT_THROW((void)field.select(sweep), std::bad_alloc);
+  EXPECT_EQ(field.held_tiles(), 0U);
+  out_of_memory = false;
+  HeightField untroubled(hills());
+  EXPECT_EQ(axis_depth_m(field.select(sweep), request),
+            axis_depth_m(untroubled.select(sweep), request));
 }
 
 }  // namespace

@@ -128,7 +128,8 @@ TEST_F(Projection, LaysPixelsWhereTheCameraSeesThemThroughEveryLens) {
       CameraModel(kPinhole),
       CameraModel(kPinhole, {DistortionModel::kRadtan, {-0.28, 0.07, 2e-4, 2e-5, 0.0}}),
       CameraModel(kPinhole, {DistortionModel::kEquidistant, {-0.01, 0.002, 0.0, 0.0, 0.0}}),
-      CameraModel(kPinhole, {DistortionModel::kFov, {0.9, 0.0, 0.0, 0.0, 0.0}})};
+      CameraModel(kPinhole, {DistortionModel::kFov, {0.9, 0.0, 0.0, 0.0, 0.0}}),
+      CameraModel(kPinhole, {DistortionModel::kFov, {}})};
   for (const CameraModel& camera : models) {
     SCOPED_TRACE(to_string(camera.distortion().model));
     for (const Eigen::Vector2d& pixel :

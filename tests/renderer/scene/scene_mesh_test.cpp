@@ -158,10 +158,12 @@ TEST(RibbonMesh, JoinsTheWingTipsAndMergesPosesThatLookTheSame) {
   EXPECT_GE(vertices(5001, 0.01), 50U * 6U);
 }
 
+const PinholeCamera kSeenCamera{100, 80, 50.0, 50.0, 49.5, 39.5};
+
 TEST(FrustumMesh, ReachesTheGroundAtTheImagesCorners) {
   const FlatGround ground(0.0);
   SceneContent::Frustum frustum;
-  frustum.camera = {100, 80, 50.0, 50.0, 49.5, 39.5};
+  frustum.camera = kSeenCamera;
   frustum.T_world_camera = {R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 100.0}};
   // From 1000 m above, so that the footprint of 200 x 160 m is in view.
   const Pose above{R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 1000.0}};
@@ -180,6 +182,48 @@ TEST(FrustumMesh, ReachesTheGroundAtTheImagesCorners) {
   // Four edges of six vertices, four faces of three, and 64 pieces of the outline.
   EXPECT_EQ(box_of(false).second, 4U * 6U + 4U * 3U);
   EXPECT_EQ(count, 4U * 6U + 4U * 3U + 64U * 6U);
+}
+
+TEST(FrustumMesh, FollowsTheBorderOfALens) {
+  const FlatGround ground(0.0);
+  SceneContent::Frustum frustum;
+  frustum.camera = CameraModel(kSeenCamera, {DistortionModel::kRadtan, {-0.1, 0.01, 0, 0, 0}});
+  ASSERT_TRUE(frustum.camera.validate().ok());
+  frustum.T_world_camera = {R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 100.0}};
+  const Pose above{R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 1000.0}};
+  frustum.edges = false;
+  SceneTriangles outline(View::from(kSceneCamera, above));
+  add_frustum(frustum, ground, outline);
+  EXPECT_EQ(outline.vertices().size(), 64U * 6U);
+  for (const SceneVertex& v : outline.vertices()) {
+    // Both cameras look straight down from the same place on the map.
+    const Eigen::Vector3d ray = kSceneCamera.ray(pixel_of(v));
+    const auto seen = frustum.camera.project({1000.0 * ray.x(), 1000.0 * ray.y(), 100.0});
+    ASSERT_TRUE(seen);
+    const Eigen::Vector2d from_middle = (*seen - Eigen::Vector2d(49.5, 39.5)).cwiseAbs();
+    const double off_px = (from_middle - Eigen::Vector2d(50.0, 40.0)).maxCoeff();
+    // Half of the line's width is 1.2 px of the view, 4.8 m on the ground.
+    EXPECT_NEAR(off_px, 0.0, 50.0 * 4.8 / 100.0);
+  }
+  frustum.edges = true;
+  frustum.footprint = false;
+  SceneTriangles pyramid(View::from(kSceneCamera, above));
+  add_frustum(frustum, ground, pyramid);
+  EXPECT_EQ(pyramid.vertices().size(), 4U * 6U + 64U * 3U) << "the faces are curved";
+}
+
+TEST(FrustumMesh, LeavesOutPixelsWithoutARay) {
+  SceneContent::Frustum frustum;
+  // Folds before the image's corners.
+  frustum.camera = CameraModel(kSeenCamera, {DistortionModel::kRadtan, {-0.15, 0, 0, 0, 0}});
+  ASSERT_FALSE(frustum.camera.ray({-0.5, -0.5}));
+  frustum.T_world_camera = {R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 100.0}};
+  const Pose above{R_world_body_from({}) * R_body_camera_nadir(), {10.0, 20.0, 1000.0}};
+  SceneTriangles triangles(View::from(kSceneCamera, above));
+  add_frustum(frustum, FlatGround(0.0), triangles);
+  EXPECT_FALSE(triangles.vertices().empty());
+  EXPECT_LT(triangles.vertices().size(), 64U * 3U + 64U * 6U);
+  for (const SceneVertex& v : triangles.vertices()) EXPECT_TRUE(place(v).allFinite());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/renderer.hpp"
+#include "renderer/tiles/tile_store.hpp"
 #include "renderer/viewpoint.hpp"
 #include "tests/renderer/procedural_ground.hpp"
 
@@ -151,6 +152,42 @@ TEST_F(SceneView, FootprintOutlinesTheImageOnTheGround) {
   // 100 m above flat ground: 1280 / 700 x 100 m by 960 / 700 x 100 m, seen from 400 m.
   EXPECT_NEAR(box.width, f_px / 400.0 * 1280.0 / 7.00006, 4.0);
   EXPECT_NEAR(box.height, f_px / 400.0 * 960.0 / 7.00006, 4.0);
+}
+
+TEST_F(SceneView, ShowsHazeBeyondTheReachOfTheGround) {
+  // From 1000 km, 50 deg down.
+  const Pose high = look_at({0, 0, 1e6}, {0, 1e6 / std::tan(rad_from_deg(50.0)), 0}, {0, 0, 1});
+  (void)draw(top_viewpoint({0, 0, 0}, 0.0, 400.0), {});
+  const Image after_ground = draw(high, {});
+  (void)draw(look_at({0, -25, 203}, {0, 1000, 203}, {0, 0, 1}), {});
+  EXPECT_EQ(draw(high, {}).data, after_ground.data) << "nothing of the picture before";
+  const int haze[] = {214, 227, 237};
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(after_ground.at(480, 100, c), haze[c], 1);
+}
+
+TEST_F(SceneView, ThatFailsLeavesNoLateTilesToTheNextPicture) {
+  overfly::testing::ProceduralGround::Options options;
+  options.paint = [](double, double) { return 90.0; };
+  options.failing_level = 3;  // the coarsest
+  const auto tiles = std::make_shared<overfly::testing::ProceduralGround>(options);
+  RendererOptions shared;
+  shared.tile_store = std::make_shared<TileStore>(tiles, TileStoreOptions{});
+  // The west is there, coarsely; of the east there is nothing.
+  for (const int row : {0, 1}) {
+    ASSERT_TRUE(shared.tile_store->get({2, 0, row}, PixelFormat::kRgb8).ok());
+  }
+  const auto renderer = std::move(create_egl_renderer(tiles, shared).value());
+  renderer::SceneView view;
+  view.T_world_camera = top_viewpoint({0, 0, 0}, 0.0, 100.0);
+  view.tile_wait_ns = 0;
+  const auto image = renderer->render_scene(view, {});
+  ASSERT_FALSE(image.ok());
+  EXPECT_EQ(image.error().code, ErrorCode::kIo);
+  const auto camera = PinholeCamera::from_fov(320, 240, 1.0, FovAxis::kHorizontal).value();
+  const Pose west{R_world_body_from({}) * R_body_camera_nadir(), {-200.0, 100.0, 100.0}};
+  const auto frame = renderer->render_camera(camera, west, 0, PixelFormat::kRgb8);
+  ASSERT_TRUE(frame.ok()) << frame.error().message;
+  EXPECT_EQ(frame->late_tiles, 0);
 }
 
 TEST_F(SceneView, ChaseKeepsTheAircraftInTheMiddleAndTheHorizonLevel) {

@@ -45,6 +45,18 @@ TEST(ViewRibbons, EndsTheTruthAtTheInstantAsked) {
   EXPECT_EQ(ribbons.centre().y(), 49.5);
 }
 
+TEST(ViewRibbons, AreOutdatedOnceTheRunIsScoredAgain) {
+  const auto timeline = std::make_shared<RunTimeline>(RunInfo{}, std::vector<std::string>{"a"});
+  const ViewRibbons unscored(timeline);
+  EXPECT_FALSE(unscored.is_outdated());
+  timeline->set_metrics(RunMetrics());
+  EXPECT_TRUE(unscored.is_outdated());
+  const ViewRibbons scored(timeline);
+  EXPECT_FALSE(scored.is_outdated());
+  timeline->set_metrics(RunMetrics());
+  EXPECT_TRUE(scored.is_outdated());
+}
+
 TEST(ViewRibbons, GrowsWithTheRunAsIfReadAtOnce) {
   const auto timeline = std::make_shared<RunTimeline>(RunInfo{}, std::vector<std::string>{"a"});
   ViewRibbons growing(timeline);

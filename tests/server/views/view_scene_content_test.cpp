@@ -234,6 +234,19 @@ TEST_F(ViewSceneContentTest, HasTheMapPointsRecordedLast) {
   EXPECT_TRUE(points_at_frame(*runs, id, 12).empty());
 }
 
+TEST_F(ViewSceneContentTest, HasTheFrustumOfTheCamerasLens) {
+  const auto runs = watched_runs();
+  std::vector<Override> bent = perfect();
+  bent.push_back({"camera.distortion",
+                  nlohmann::json::parse(R"({"model":"radtan","coefficients":[-0.12,0.02,0,0]})")});
+  const std::string id = runs->start("small", bent).value().id;
+  wait_for_end(*runs, id);
+  const renderer::SceneContent scene = drawn(*runs, scene_of(id, 9));
+  ASSERT_TRUE(scene.frustum);
+  EXPECT_EQ(scene.frustum->camera.distortion().model, DistortionModel::kRadtan);
+  EXPECT_TRUE(scene.frustum->camera == runs->timeline(id).value()->main_camera().model);
+}
+
 TEST_F(ViewSceneContentTest, HasOnlyThePartsThatAreShown) {
   const auto runs = watched_runs();
   const std::string id = fly_drifting(*runs);

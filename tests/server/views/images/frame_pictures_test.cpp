@@ -144,6 +144,43 @@ TEST_F(FramePictures, APlainCameraHasNoSensorEffects) {
   for (const std::uint8_t value : image.data) ASSERT_NEAR(value, 18, 4);
 }
 
+/// The dashboard asks for -0.5 at the left and upper edges.
+TEST_F(FramePictures, ThePixelAtTheEdgeIsTheFirstOne) {
+  const std::string id = fly(perfect());
+  const auto first = pixel(pixel_of(id, 0.0, 0.0));
+  ASSERT_TRUE(first.ok()) << first.error().message;
+  const auto corner = pixel(pixel_of(id, -0.5, -0.5));
+  ASSERT_TRUE(corner.ok()) << corner.error().message;
+  EXPECT_EQ(corner->grey, first->grey);
+  const auto last = pixel(pixel_of(id, 159.0, 119.0));
+  const auto other_corner = pixel(pixel_of(id, 159.49, 119.49));
+  ASSERT_TRUE(other_corner.ok()) << other_corner.error().message;
+  EXPECT_EQ(other_corner->grey, last->grey);
+}
+
+TEST_F(FramePictures, ADifferenceIsOfTheEstimatorsCameraOnly) {
+  const std::string id =
+      fly({{"cameras",
+            nlohmann::json::parse(R"([{"name":"wide","width_px":320,"height_px":240,"rate_hz":10},
+                                  {"name":"small","width_px":64,"height_px":48,"rate_hz":10}])")},
+           {"estimators",
+            nlohmann::json::parse(R"([{"name":"p","type":"perfect","camera":"small"}])")}});
+  PixelRequest far_out = pixel_of(id, 300.0, 200.0);
+  far_out.error.emplace();
+  far_out.error->estimator = 0;
+  const auto refused = pixel(far_out);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message,
+              ::testing::HasSubstr(R"(uses camera "small", but the pixel is of camera "wide")"));
+  far_out.camera = "small";
+  far_out.x_px = 60.0;
+  far_out.y_px = 40.0;
+  const auto seen = pixel(far_out);
+  ASSERT_TRUE(seen.ok()) << seen.error().message;
+  EXPECT_EQ(seen->difference, 0);
+}
+
 TEST_F(FramePictures, NoiseVignetteAndFaultsAreSensorEffects) {
   auto overrides = perfect();
   overrides.push_back(camera_with(R"("sensor":{"read_noise_e":60,"vignette":[-0.3,0,0]})"));
