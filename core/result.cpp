@@ -18,6 +18,10 @@ const char* to_string(ErrorCode code) {
       return "cancelled";
     case ErrorCode::kConflict:
       return "conflict";
+    case ErrorCode::kTimeout:
+      return "timeout";
+    case ErrorCode::kForbidden:
+      return "forbidden";
     case ErrorCode::kInternal:
       return "internal";
   }

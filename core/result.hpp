@@ -18,6 +18,8 @@ enum class ErrorCode {
   kUnsupported,      ///< not supported by this build or machine
   kCancelled,        ///< cancelled by the user
   kConflict,         ///< already exists, or is in another state
+  kTimeout,          ///< a peer did not answer in time
+  kForbidden,        ///< only the owner of the machine may do or name this
   kInternal,         ///< a library failed; not the user's fault
 };
 

@@ -12,12 +12,21 @@ namespace {
 
 constexpr std::int64_t kInitPathNs = 5 * kNsPerS;
 
-/// Ratio of the path lengths of truth and estimate over the first 5 s.
-Result<double> scale_from_path(const std::vector<MatchedPose>& matches) {
+/// As steps where times are not known: 5 s at the 10 Hz of the KITTI benchmark.
+constexpr std::size_t kInitPathSteps = 50;
+
+const char* init_path_words(const Options& options) {
+  return options.has_times ? "the first 5 s" : "the first 50 steps (times are not known)";
+}
+
+/// Ratio of the path lengths of truth and estimate at the beginning.
+Result<double> scale_from_path(const std::vector<MatchedPose>& matches, const Options& options) {
   double truth_m = 0.0;
   double vo = 0.0;
   for (std::size_t i = 1; i < matches.size(); ++i) {
-    if (matches[i].t_ns - matches.front().t_ns > kInitPathNs) break;
+    const bool beyond = options.has_times ? matches[i].t_ns - matches.front().t_ns > kInitPathNs
+                                          : i > kInitPathSteps;
+    if (beyond) break;
     truth_m +=
         (matches[i].T_world_camera.translation - matches[i - 1].T_world_camera.translation).norm();
     vo += (matches[i].T_vo_camera.translation - matches[i - 1].T_vo_camera.translation).norm();
@@ -25,8 +34,8 @@ Result<double> scale_from_path(const std::vector<MatchedPose>& matches) {
   if (truth_m > 0.0 && vo > 0.0 && std::isfinite(truth_m / vo)) return truth_m / vo;
   return Error{ErrorCode::kInvalidArgument,
                std::string("no scene depth at the first pose, and ") +
-                   (vo > 0.0 ? "the truth" : "the estimate") +
-                   " does not move in the first 5 s: the scale cannot be determined"};
+                   (vo > 0.0 ? "the truth" : "the estimate") + " does not move in " +
+                   init_path_words(options) + ": the scale cannot be determined"};
 }
 
 Result<double> init_scale(const std::vector<MatchedPose>& matches,
@@ -35,10 +44,10 @@ Result<double> init_scale(const std::vector<MatchedPose>& matches,
   const std::optional<double> depth = matches.front().scene_depth;
   const bool has_depth = depth && std::isfinite(*depth) && *depth > 0.0;
   if (has_depth && options.init_true_depth_m) return *options.init_true_depth_m / *depth;
-  Result<double> scale = scale_from_path(matches);
+  Result<double> scale = scale_from_path(matches, options);
   if (scale && remarks != nullptr) {
-    remarks->notes.push_back(std::string("scale from the path of the first 5 s: ") +
-                             (has_depth ? "the true depth" : "the estimate's scene depth") +
+    remarks->notes.push_back(std::string("scale from the path of ") + init_path_words(options) +
+                             ": " + (has_depth ? "the true depth" : "the estimate's scene depth") +
                              " at the first pose is unknown");
   }
   return scale;

@@ -41,6 +41,26 @@ void keep_nearest_of_each(const Trajectory& truth, std::vector<MatchedPose>* mat
   *matches = std::move(kept);
 }
 
+/// The truth's own path where the estimate has a gap, in which the aircraft may have turned.
+void add_detours(const Trajectory& truth, std::vector<MatchedPose>* matches) {
+  for (std::size_t i = 1; i < matches->size(); ++i) {
+    MatchedPose& now = (*matches)[i];
+    const MatchedPose& before = (*matches)[i - 1];
+    if (now.t_ns - before.t_ns <= kNsPerS) continue;
+    const auto later = [](std::int64_t t_ns, const StampedPose& pose) { return t_ns < pose.t_ns; };
+    auto between = std::upper_bound(truth.poses().begin(), truth.poses().end(), before.t_ns, later);
+    Eigen::Vector3d last_m = before.T_world_camera.translation;
+    double path_m = 0.0;
+    for (; between != truth.poses().end() && between->t_ns < now.t_ns; ++between) {
+      path_m += (between->pose.translation - last_m).norm();
+      last_m = between->pose.translation;
+    }
+    const Eigen::Vector3d& end_m = now.T_world_camera.translation;
+    path_m += (end_m - last_m).norm();
+    now.detour_m = std::max(0.0, path_m - (end_m - before.T_world_camera.translation).norm());
+  }
+}
+
 Error no_overlap(const Trajectory& truth,
                  const EstimateTrack& estimate,
                  int map_id,
@@ -127,6 +147,7 @@ Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_trut
     keep_nearest_of_each(T_world_camera_truth, &matches);
   }
   if (matches.empty()) return no_overlap(T_world_camera_truth, estimate, *map_id, options);
+  add_detours(T_world_camera_truth, &matches);
   return matches;
 }
 

@@ -9,12 +9,11 @@
 namespace overfly::evaluation {
 namespace {
 
-constexpr double kLeastSpeed_m_s = 1.0;
-
 /// Horizontal unit vector of the motion up to t; empty if it is slow or not known.
 std::optional<Eigen::Vector2d> motion_direction(const Trajectory& truth,
                                                 std::int64_t t_ns,
-                                                const Eigen::Vector3d& p_world) {
+                                                const Eigen::Vector3d& p_world,
+                                                double least_speed_m_s) {
   if (truth.empty()) return std::nullopt;
   const std::int64_t before_ns = std::max(t_ns - kPathWindowNs, truth.begin_ns());
   if (before_ns >= t_ns) return std::nullopt;
@@ -22,7 +21,7 @@ std::optional<Eigen::Vector2d> motion_direction(const Trajectory& truth,
   if (!before) return std::nullopt;
   const Eigen::Vector2d motion_m = (p_world - before->translation).head<2>();
   const double length_m = motion_m.norm();
-  if (!(length_m >= kLeastSpeed_m_s * s_from_ns(t_ns - before_ns))) return std::nullopt;
+  if (!(length_m >= least_speed_m_s * s_from_ns(t_ns - before_ns))) return std::nullopt;
   return motion_m / length_m;
 }
 
@@ -42,9 +41,10 @@ AxisError axis_error(const Trajectory& T_world_camera_truth,
                      std::int64_t t_ns,
                      const Pose& T_world_camera,
                      const Eigen::Vector3d& p_world_estimated,
-                     const Pose& T_body_camera) {
+                     const Pose& T_body_camera,
+                     double least_speed_m_s) {
   const Eigen::Vector2d along =
-      motion_direction(T_world_camera_truth, t_ns, T_world_camera.translation)
+      motion_direction(T_world_camera_truth, t_ns, T_world_camera.translation, least_speed_m_s)
           .value_or(nose_direction(T_world_camera, T_body_camera));
   const Eigen::Vector2d right(along.y(), -along.x());
   const Eigen::Vector3d error_m = p_world_estimated - T_world_camera.translation;
@@ -54,7 +54,8 @@ AxisError axis_error(const Trajectory& T_world_camera_truth,
 std::vector<AxisError> axis_errors(const Trajectory& T_world_camera_truth,
                                    const std::vector<MatchedPose>& matches,
                                    const Similarity& S_world_vo,
-                                   const Pose& T_body_camera) {
+                                   const Pose& T_body_camera,
+                                   double least_speed_m_s) {
   std::vector<AxisError> errors;
   errors.reserve(matches.size());
   for (const MatchedPose& match : matches) {
@@ -62,7 +63,8 @@ std::vector<AxisError> axis_errors(const Trajectory& T_world_camera_truth,
                                 match.t_ns,
                                 match.T_world_camera,
                                 S_world_vo * match.T_vo_camera.translation,
-                                T_body_camera));
+                                T_body_camera,
+                                least_speed_m_s));
   }
   return errors;
 }

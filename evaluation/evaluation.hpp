@@ -29,8 +29,8 @@ enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kO
 [[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
 
 /// Result of an estimator's run. If several conditions hold, the first of DIVERGED, RESET, LOST,
-/// INIT_LATE is reported. CRASHED and TIMEOUT cannot be seen in a track: the code that runs the
-/// estimator sets them in Score::outcome.
+/// INIT_LATE is reported. CRASHED and TIMEOUT (it stopped answering) cannot be seen in a track: the
+/// code that runs the estimator sets them in Score::outcome.
 ///
 /// COMPLETED: the estimator initialised in time, tracks at the end of the flight in the same map,
 /// and at least 95 % of the flight's frames after initialisation count as tracked.
@@ -74,6 +74,9 @@ struct Options {
   /// KITTI's, and those between the position fixes of a long flight.
   std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800, 1000, 2000, 5000};
   std::vector<double> fix_intervals_m{1000, 2000, 5000};  ///< between position fixes
+  /// False for files without times, whose poses count as 1 s apart: nothing is then concluded from
+  /// times.
+  bool has_times = true;
 };
 
 /// One truth-estimate pair, in time order.
@@ -83,6 +86,9 @@ struct MatchedPose {
   Pose T_vo_camera;     ///< estimate
   std::optional<double> scene_depth;
   PoseCovariancePtr covariance = nullptr;  ///< of T_vo_camera's error; null if not stated
+  /// After a gap of more than a second in the estimate: how much longer the true path since the
+  /// previous match is than the straight line [m].
+  double detour_m = 0.0;
 };
 
 /// Root mean square, mean, median and maximum of an error.
@@ -162,7 +168,8 @@ struct AlignmentRemarks {
 /// - none: identity.
 /// - origin: aligns the first poses; scale 1.
 /// - init_scale: as origin, with the scale init_true_depth_m / scene depth of the first pose. If
-/// one of the two is absent, the ratio of path lengths over the first 5 s is used and noted.
+/// one of the two is absent, the ratio of path lengths over the first 5 s is used and noted;
+/// without times, over the first 50 steps, which are 5 s at the 10 Hz of the KITTI benchmark.
 /// - se3, sim3: least squares over positions (Umeyama 1991).
 /// - yaw_only: least squares with rotation about the vertical only, scale 1 (Zhang, Scaramuzza
 /// 2018).

@@ -17,7 +17,7 @@ std::vector<double> distances_of(const std::vector<MatchedPose>& matches) {
   for (std::size_t i = 1; i < matches.size(); ++i) {
     const double step_m =
         (matches[i].T_world_camera.translation - matches[i - 1].T_world_camera.translation).norm();
-    distances_m.push_back(distances_m.back() + step_m);
+    distances_m.push_back(distances_m.back() + (step_m + matches[i].detour_m));
   }
   return distances_m;
 }

@@ -84,7 +84,9 @@ Score score(const Trajectory& T_world_camera_truth,
       associate(T_world_camera_truth, estimate, options);
   const std::vector<FlownFrame> flown = flown_frames(estimate, options);
   result.covariances = covariances_of(estimate);
-  add_outcome(flown, matches ? *matches : std::vector<MatchedPose>{}, &result);
+  // Divergence is judged over 10 s.
+  const bool judged = matches && options.has_times;
+  add_outcome(flown, judged ? *matches : std::vector<MatchedPose>{}, &result);
   if (!matches) {
     for (const AlignmentMode mode : all_alignment_modes()) {
       result.unavailable[mode] = matches.error().message;

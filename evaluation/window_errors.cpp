@@ -47,7 +47,8 @@ std::vector<std::optional<RelativeErrorAt>> relative_errors_along(
     if (!poses[at]) continue;
     const PosePair& now = *poses[at];
     const PosePair* const last = known.empty() ? nullptr : &*poses[known.back()];
-    if (last == nullptr || last->map_id != now.map_id) {
+    const bool after_gap = !known.empty() && at - known.back() > kMaxGapPoses;
+    if (last == nullptr || last->map_id != now.map_id || after_gap) {
       known = {at};
       path_m = {0.0};
       first = 0;

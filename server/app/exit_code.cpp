@@ -10,12 +10,14 @@ int exit_code_of(ErrorCode code) {
     case ErrorCode::kNotFound:
     case ErrorCode::kUnreadable:
     case ErrorCode::kConflict:
+    case ErrorCode::kForbidden:
       return kExitUsage;
     case ErrorCode::kCancelled:
       return kExitCancelled;
     case ErrorCode::kUnsupported:
       return kExitUnsupported;
     case ErrorCode::kIo:
+    case ErrorCode::kTimeout:
     case ErrorCode::kInternal:
       return kExitFailure;
   }

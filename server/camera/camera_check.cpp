@@ -91,6 +91,7 @@ Scenario without_sensor(Scenario scenario) {
 
 std::string px(double value) { return std::to_string(value) + " px"; }
 
+/// @pre !row.pairs.empty()
 void judge(CameraCheckRow& row, double limit_px) {
   row.fewest_patches = row.pairs.front().residual.patches;
   for (const CameraCheckPair& pair : row.pairs) {
@@ -167,6 +168,10 @@ Result<std::vector<CameraCheckRow>> check_camera(const Scenario& scenario,
   making.notice = options.notice;
   const auto maker = FrameMaker::open(quiet, making);
   if (!maker) return maker.error();
+  if (!(*maker)->duration_ns()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight: its length is not known in advance; the check needs one that is planned"};
+  }
   const std::int64_t last_first = (*maker)->frames_total() - 2;
   if (last_first < 0) {
     return Error{ErrorCode::kInvalidArgument,

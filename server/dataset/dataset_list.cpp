@@ -8,6 +8,7 @@
 #include "core/text/natural_order.hpp"
 #include "server/dataset/dataset_reader.hpp"
 #include "server/dataset/grey_image.hpp"
+#include "server/files/plain_name.hpp"
 
 namespace overfly::server {
 namespace {
@@ -15,6 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 
 }  // namespace
+
+Status check_camera_name(const std::string& name) {
+  if (is_plain_name(name)) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "camera name = \"" + name.substr(0, 100) +
+                   "\": must be 1 to 200 letters, digits, '_', '-' or '.', not beginning with '.'"};
+}
 
 Status append_image(const fs::path& list_file,
                     const FieldLine& line,

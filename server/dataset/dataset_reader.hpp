@@ -42,6 +42,9 @@ struct EurocSensor {
 /// from both.
 [[nodiscard]] Result<CameraModel> read_tum_mono_camera(const std::filesystem::path& file);
 
+/// Errors: kInvalidArgument for a name that would lead out of the data set's folder.
+[[nodiscard]] Status check_camera_name(const std::string& name);
+
 /// Appends an image. Whether its file exists is checked later.
 [[nodiscard]] Status append_image(const std::filesystem::path& list_file,
                                   const FieldLine& line,

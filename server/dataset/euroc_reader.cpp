@@ -29,6 +29,7 @@ Result<ListedDataset> read_euroc(const DatasetOptions& options) {
                  (options.folder / "mav0" / "cam0" / "data.csv").string() + ": no such file"};
   }
   const std::string name = options.camera_name.empty() ? "cam0" : options.camera_name;
+  if (Status status = check_camera_name(name); !status) return status.error();
   const fs::path camera_folder = *root / name;
   const fs::path path = camera_folder / "data.csv";
   const Result<FieldFile> file = FieldFile::read(path);

@@ -54,6 +54,7 @@ Result<ListedDataset> read_kitti(const DatasetOptions& options) {
   const std::string name = options.camera_name.empty()
                                ? kitti_image_folder(options.folder).value_or("image_0")
                                : options.camera_name;
+  if (Status status = check_camera_name(name); !status) return status.error();
   const fs::path path = options.folder / "times.txt";
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();

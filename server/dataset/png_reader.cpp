@@ -92,6 +92,9 @@ Result<ListedDataset> read_png_export(const DatasetOptions& options) {
     if (!mount) return mount.error().in(cameras_file.string());
     listed.dataset.T_body_camera = *mount;
   }
+  if (Status status = check_camera_name(listed.dataset.camera_name); !status) {
+    return status.error().in(cameras_file.string());
+  }
   const fs::path path = options.folder / (listed.dataset.camera_name + ".csv");
   const Result<FieldFile> file = FieldFile::read(path);
   if (!file) return file.error();

@@ -85,12 +85,14 @@ class Pass {
       result_.cancelled = true;
       return {};
     }
-    if (estimate.error().code != ErrorCode::kInternal) {
+    const bool hung = estimate.error().code == ErrorCode::kTimeout;
+    if (estimate.error().code != ErrorCode::kInternal && !hung) {
       return estimate.error().in(dataset_.images[i].listed_at);
     }
     crashed_ = true;
     result_.records.push_back(lost_record(*frame));
     result_.records.back().crash = estimate.error().message;
+    result_.records.back().hung = hung;
     return {};
   }
 

@@ -95,6 +95,7 @@ evaluation::Score score_of(const Dataset& dataset,
   if (!truth_has_times) {
     // Line i of a file without times belongs to image i.
     options.association = evaluation::Association::kIndex;
+    options.has_times = false;
     for (std::size_t i = 0; i < track.samples.size(); ++i) {
       track.samples[i].frame = static_cast<std::int64_t>(i);
     }
@@ -104,7 +105,8 @@ evaluation::Score score_of(const Dataset& dataset,
   }
   evaluation::Score score = evaluation::score(T_world_camera, track, options);
   if (crash_of(tracked)) {
-    score.outcome = evaluation::Outcome::kCrashed;
+    score.outcome =
+        tracked.records.back().hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
     score.outcome_time_s = s_from_ns(track.samples.back().t_ns);
   }
   return score;

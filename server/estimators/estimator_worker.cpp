@@ -210,6 +210,7 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
     if (estimate.error().code == ErrorCode::kCancelled) return drop_of(waiting.frame);
     crashed_ = true;
     event.record.crash = estimate.error().message;
+    event.record.hung = estimate.error().code == ErrorCode::kTimeout;
     return event;
   }
   event.record = record_of(*estimate);

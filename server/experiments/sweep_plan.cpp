@@ -51,10 +51,12 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
   SweepPlan plan(sweep, std::move(cells));
   std::string messages;
   int faults = 0;
+  ErrorCode code = ErrorCode::kInvalidArgument;
   for (std::size_t i = 0; i < plan.cells_.size(); ++i) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const Result<Scenario> scenario = scenario_of(sweep, plan.cells_[i], 0);
     if (!scenario) {
+      if (scenario.error().code == ErrorCode::kForbidden) code = ErrorCode::kForbidden;
       if (++faults <= kMostMessages)
         messages += (faults > 1 ? "\n" : "") + scenario.error().message;
       continue;
@@ -75,7 +77,7 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
   if (faults > kMostMessages) {
     messages += "\nand " + std::to_string(faults - kMostMessages) + " cells more";
   }
-  if (faults > 0) return Error{ErrorCode::kInvalidArgument, messages};
+  if (faults > 0) return Error{code, messages};
   if (plan.estimators_.empty()) {
     return Error{ErrorCode::kInvalidArgument, "estimators: must have at least one"};
   }

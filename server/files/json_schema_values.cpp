@@ -122,6 +122,6 @@ std::string shown(const Json& value) {
   return text;
 }
 
-std::string label_of(const std::string& path) { return path.empty() ? "the scenario" : path; }
+std::string label_of(const std::string& path) { return path.empty() ? "the document" : path; }
 
 }  // namespace overfly::server

@@ -332,7 +332,7 @@ Status LogUploads::remove(const fs::path& file) const {
   const auto is_own = [&](const fs::path& folder) {
     return !own.empty() && fs::equivalent(folder, own, failed);
   };
-  if (is_own(parent.parent_path()) && parent.filename() == file.stem()) {
+  if (is_own(parent.parent_path()) && file.filename() == parent.filename().string() + ".json") {
     if (fs::remove_all(parent, failed) > 0 && !failed) return {};
     return Error{ErrorCode::kIo, parent.string() + ": cannot be deleted: " + failed.message()};
   }

@@ -37,6 +37,15 @@ Status make_empty_folder(const fs::path& folder) {
   return {};
 }
 
+/// Of a folder that was empty: a run that cannot begin leaves nothing that looks like one.
+void remove_contents(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(manifest_file(folder), ignored);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    fs::remove_all(entry.path(), ignored);
+  }
+}
+
 std::vector<RunManifest::Estimator> listed_estimators(const Scenario& scenario) {
   std::vector<RunManifest::Estimator> estimators;
   for (const EstimatorSpec& spec : scenario.estimators) {
@@ -115,7 +124,11 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
   if (!timeline) timeline = std::make_shared<RunTimeline>(info, info.estimators);
   recorder->timeline_ = std::move(timeline);
   recorder->publish_images_ = publish_images;
-  if (Status status = recorder->open_files(); !status) return status.error();
+  if (Status status = recorder->open_files(); !status) {
+    recorder.reset();  // closes its files: the reason may be that too many are open
+    remove_contents(folder);
+    return status.error();
+  }
   return recorder;
 }
 

@@ -97,6 +97,7 @@ class ManagedRuns {
   PictureRate picture_rate;
   RunIndex index;
   TimelineShelf shelf;
+  std::mutex writing_notes;
 
  private:
   void work();

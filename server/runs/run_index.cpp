@@ -67,10 +67,13 @@ bool RunIndex::look_for_folders(int descriptor) {
 bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   const FileStamp manifest = FileStamp::of(descriptor, id + "/manifest.json");
   const FileStamp notes = FileStamp::of(descriptor, id + "/notes.json");
-  if (entry.settled && manifest == entry.manifest && notes == entry.notes) return false;
+  const FileStamp metrics = FileStamp::of(descriptor, id + "/metrics.json");
+  const bool same = manifest == entry.manifest && notes == entry.notes && metrics == entry.metrics;
+  if (entry.settled && same) return false;
   const bool had_none = entry.info == nullptr;
   entry.manifest = manifest;
   entry.notes = notes;
+  entry.metrics = metrics;
   entry.info = nullptr;
   if (manifest.exists) {
     if (Result<RunInfo> info = read_listed_run(folder_ / id); info) {
@@ -81,7 +84,10 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   // A run that another process flies changes without a change of its manifest.
   const bool flies = entry.info && entry.info->status == RunStatus::kRunning;
   const std::int64_t now_ns = utc_now_ns();
-  entry.settled = manifest.settled(now_ns) && (!notes.exists || notes.settled(now_ns)) && !flies;
+  const auto is_settled = [&](const FileStamp& file) {
+    return !file.exists || file.settled(now_ns);
+  };
+  entry.settled = manifest.settled(now_ns) && is_settled(notes) && is_settled(metrics) && !flies;
   return !had_none || entry.info != nullptr;
 }
 

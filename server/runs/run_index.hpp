@@ -41,6 +41,7 @@ class RunIndex {
   struct Entry {
     FileStamp manifest;
     FileStamp notes;
+    FileStamp metrics;
     /// Read after the last change of these files; only a change of them can change the run.
     bool settled = false;
     std::shared_ptr<const RunInfo> info;  ///< null if there is no manifest

@@ -159,6 +159,7 @@ Status RunManager::set_notes(const std::string& id, const RunNotes& notes) {
   }
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
+  const std::lock_guard lock(impl_->writing_notes);
   return write_notes(*place, notes);
 }
 

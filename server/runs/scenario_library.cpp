@@ -66,6 +66,8 @@ Result<Scenario> ScenarioLibrary::load(const std::string& name,
   const SourcePolicy sources = options_.sources();
   Result<Scenario> loaded = load_scenario(found->file, overrides, sources);
   if (!loaded) return loaded.error();
+  // Of what is flown: a file that clients write may differ the next time it is read.
+  if (Status reach = check_reach(*loaded, *found, overrides); !reach) return reach.error();
   loaded->sources = sources;
   if (Status status = check_scenario(*loaded); !status) return status.error();
   return loaded;
@@ -76,6 +78,7 @@ Result<Scenario> ScenarioLibrary::read(const Json& document) const {
   const fs::path base = fs::absolute(options_.folder).lexically_normal();
   Result<Scenario> scenario = resolve_scenario(document, {}, base, sources);
   if (!scenario) return scenario.error();
+  if (Status reach = reach_check()(*scenario); !reach) return reach.error();
   scenario->sources = sources;
   if (Status status = check_scenario(*scenario); !status) return status.error();
   return scenario;
@@ -94,24 +97,15 @@ std::function<Status(const Scenario&)> ScenarioLibrary::reach_check() const {
   };
 }
 
-Status ScenarioLibrary::check_reach(const std::string& name,
+Status ScenarioLibrary::check_reach(const Scenario& wanted,
+                                    const Found& found,
                                     const std::vector<Override>& overrides) const {
   if (options_.allow_commands) return {};
-  const Result<Found> found = find(name);
-  if (!found || (overrides.empty() && !found->saved)) return {};
-  const SourcePolicy sources = options_.sources();
-  const Result<Scenario> wanted = load_scenario(found->file, overrides, sources);
-  if (!wanted) return {};
-  if (found->saved) return reach_check()(*wanted);
+  if (found.saved) return reach_check()(wanted);
+  if (overrides.empty()) return {};
   // If the file itself is invalid and only the overrides make it valid, nothing in it is trusted.
-  const Result<Scenario> trusted = load_scenario(found->file, {}, sources);
-  return server::check_reach(*wanted, {trusted ? *trusted : Scenario()});
-}
-
-Status ScenarioLibrary::check_reach(const Json& document) const {
-  const fs::path base = fs::absolute(options_.folder).lexically_normal();
-  const Result<Scenario> wanted = resolve_scenario(document, {}, base, options_.sources());
-  return wanted ? reach_check()(*wanted) : Status();
+  const Result<Scenario> trusted = load_scenario(found.file, {}, options_.sources());
+  return server::check_reach(wanted, {trusted ? *trusted : Scenario()});
 }
 
 Status ScenarioLibrary::check_name(const std::string& name,

@@ -50,23 +50,19 @@ class ScenarioLibrary {
   [[nodiscard]] std::vector<ScenarioEntry> list() const;
   /// The resolved document. Errors: kNotFound; as load_scenario.
   [[nodiscard]] Result<nlohmann::json> document(const std::string& name) const;
-  /// A scenario that can be flown. Errors: kNotFound; as load_scenario, check_scenario.
-  [[nodiscard]] Result<Scenario> load(const std::string& name,
-                                      const std::vector<Override>& overrides = {}) const;
-  /// The same of a client's document. Relative files are relative to the owner's folder.
-  /// Errors: as resolve_scenario, check_scenario.
-  [[nodiscard]] Result<Scenario> read(const nlohmann::json& document) const;
-
-  /// Checks whether a client may fly a scenario with overrides: they must not change commands,
+  /// A scenario that a client may fly and that can be flown. Overrides must not change commands,
   /// sockets and addresses of the scenario's file; a saved scenario may contain only those of the
   /// owner's files.
-  /// Errors: kInvalidArgument naming the field. Other errors are left to load().
-  [[nodiscard]] Status check_reach(const std::string& name,
-                                   const std::vector<Override>& overrides) const;
-  /// Checks whether a client may fly or save a document: as for saved scenarios.
-  [[nodiscard]] Status check_reach(const nlohmann::json& document) const;
+  /// Errors: kNotFound; kForbidden naming the field; as load_scenario, check_scenario.
+  [[nodiscard]] Result<Scenario> load(const std::string& name,
+                                      const std::vector<Override>& overrides = {}) const;
+  /// The same of a client's document, which may contain what a saved scenario may. Relative files
+  /// are relative to the owner's folder.
+  /// Errors: kForbidden naming the field; as resolve_scenario, check_scenario.
+  [[nodiscard]] Result<Scenario> read(const nlohmann::json& document) const;
 
-  /// The same check for many scenarios. Reads the owner's scenarios once, now.
+  /// Whether a client may fly scenarios that were read in another way: as for saved ones. Reads the
+  /// owner's scenarios once, now. Errors of the check: kForbidden naming the field.
   [[nodiscard]] std::function<Status(const Scenario&)> reach_check() const;
 
   /// Saves a document, resolved and under this name.
@@ -87,6 +83,9 @@ class ScenarioLibrary {
     bool saved = false;
   };
   [[nodiscard]] Result<Found> find(const std::string& name) const;
+  [[nodiscard]] Status check_reach(const Scenario& wanted,
+                                   const Found& found,
+                                   const std::vector<Override>& overrides) const;
   [[nodiscard]] Status check_name(const std::string& name,
                                   bool replace,
                                   SaveRefusal& refusal) const;

@@ -45,6 +45,7 @@ Result<evaluation::Options> options_for(const NamedTrajectory& truth,
   evaluation::Options options;
   options.association = request.association;
   // Poses without times can be matched only by their number.
+  options.has_times = truth.file.has_times;
   if (!truth.file.has_times || !estimate.file.has_times) {
     options.association = evaluation::Association::kIndex;
   }
@@ -142,9 +143,11 @@ Result<FileScore> score_file(const NamedTrajectory& truth,
   }
   result.score = evaluation::score(true_poses, *track, *options);
   choose_modes(request.alignments, result.score);
+  // Without times, poses count as 1 s apart: then a step of 1 cm gives the direction.
+  const double least_speed_m_s = options->has_times ? evaluation::kLeastSpeed_m_s : 0.01;
   for (const auto& [mode, alignment] : result.score.alignments) {
     result.axis_errors[mode] = evaluation::axis_errors(
-        true_poses, result.matches, alignment.S_world_vo, options->T_body_camera);
+        true_poses, result.matches, alignment.S_world_vo, options->T_body_camera, least_speed_m_s);
   }
   if (request.find_offsets && options->association != evaluation::Association::kIndex) {
     result.offsets = evaluation::find_offsets(true_poses, *track);

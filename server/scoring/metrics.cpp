@@ -51,7 +51,7 @@ evaluation::Score score_of(const RunRecords& records, const EstimatorRecords& es
       evaluation::score(truth ? *truth : Trajectory(), track_of(estimator), options);
   for (const EstimateRecord& record : estimator.records) {
     if (record.crash.empty()) continue;
-    score.outcome = evaluation::Outcome::kCrashed;
+    score.outcome = record.hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
     score.outcome_time_s = s_from_ns(record.sample.t_ns);
     break;
   }

@@ -113,6 +113,8 @@ std::vector<RelativeError> read_relative(const FileField& alignment) {
     take(entry, "pairs", error.pairs);
     take(entry, "translation_percent", error.translation_percent);
     take(entry, "rotation_deg_per_100m", error.rotation_deg_per_100m);
+    take(entry, "translation_mean_percent", error.translation_mean_percent);
+    take(entry, "rotation_mean_deg_per_100m", error.rotation_mean_deg_per_100m);
   }
   return errors;
 }

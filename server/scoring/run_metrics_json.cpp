@@ -94,7 +94,9 @@ Json alignment_json(const AlignmentScore& score) {
     relative.push_back({{"length_m", error.length_m},
                         {"pairs", error.pairs},
                         {"translation_percent", error.translation_percent},
-                        {"rotation_deg_per_100m", error.rotation_deg_per_100m}});
+                        {"rotation_deg_per_100m", error.rotation_deg_per_100m},
+                        {"translation_mean_percent", error.translation_mean_percent},
+                        {"rotation_mean_deg_per_100m", error.rotation_mean_deg_per_100m}});
   }
   Json S_world_vo = json_from(Pose{score.S_world_vo.rotation, score.S_world_vo.translation});
   S_world_vo["scale"] = score.S_world_vo.scale;

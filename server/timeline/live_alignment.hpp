@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 
 #include "core/motion/estimate.hpp"
@@ -10,7 +11,8 @@
 
 namespace overfly::server {
 
-/// Takes every answer of one estimator in order. A new map (reset) starts a new alignment.
+/// Takes every answer of one estimator in order. Each map has an alignment of its own, which it
+/// keeps when the estimator returns to it.
 class LiveAlignment {
  public:
   /// Without a scene depth the scale comes from the path length over the first 5 s of tracking;
@@ -27,35 +29,31 @@ class LiveAlignment {
                           const Pose& T_world_camera,
                           const std::optional<double>& axis_depth_m);
 
-  /// True depth at the first tracked frame of the first map [m].
-  [[nodiscard]] const std::optional<double>& init_true_depth_m() const {
-    return init_true_depth_m_;
-  }
-  /// Scene depth that the estimator reported at that frame, vo units.
-  [[nodiscard]] const std::optional<double>& init_scene_depth() const { return init_scene_depth_; }
-  /// S_world_vo of the current map.
+  /// S_world_vo of the map that was tracked last.
   [[nodiscard]] const std::optional<Similarity>& S_world_vo() const { return S_world_vo_; }
 
  private:
-  void begin_map(const EstimateSample& sample,
-                 const Pose& T_world_camera,
-                 const std::optional<double>& axis_depth_m);
-  void measure_path(const EstimateSample& sample, const Pose& T_world_camera);
-  void set_scale(double scale);
+  struct Map {
+    Pose T_world_camera_first;
+    Pose T_vo_camera_first;
+    std::int64_t first_t_ns = 0;
+    Eigen::Vector3d last_p_world = Eigen::Vector3d::Zero();
+    Eigen::Vector3d last_p_vo = Eigen::Vector3d::Zero();
+    double path_world_m = 0.0;
+    double path_vo = 0.0;
+    std::optional<Similarity> S_world_vo;
+
+    void measure_path(const EstimateSample& sample, const Pose& T_world_camera);
+    void set_scale(double scale);
+  };
+  /// The alignment of a map that is tracked for the first time.
+  static Map begin_map(const EstimateSample& sample,
+                       const Pose& T_world_camera,
+                       const std::optional<double>& axis_depth_m);
 
   Pose T_camera_body_;
-  std::optional<int> map_id_;
-  bool first_map_ = true;
-  Pose T_world_camera_first_;
-  Pose T_vo_camera_first_;
-  std::int64_t first_t_ns_ = 0;
-  Eigen::Vector3d last_p_world_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d last_p_vo_ = Eigen::Vector3d::Zero();
-  double path_world_m_ = 0.0;
-  double path_vo_ = 0.0;
+  std::map<int, Map> maps_;  ///< by map_id
   std::optional<Similarity> S_world_vo_;
-  std::optional<double> init_true_depth_m_;
-  std::optional<double> init_scene_depth_;
 };
 
 }  // namespace overfly::server

@@ -18,14 +18,16 @@ std::int64_t frame_period_ns(const RunTimeline& timeline) {
   return rows.size() < 2 ? 0 : rows[1].t_ns - rows[0].t_ns;
 }
 
-/// The estimator's row after `row`, if it continues the same track.
+/// The estimator's row after `row`, if it is of the next frame and continues the same track.
 std::optional<EstimateRow> continuation(const RunTimeline& timeline,
                                         std::size_t estimator,
                                         const EstimateRow& row) {
-  const auto next = timeline.estimate_at(estimator, row.sample.t_ns + frame_period_ns(timeline));
-  const bool same_track =
-      next && next->sample.t_ns > row.sample.t_ns && next->sample.map_id == row.sample.map_id;
-  return same_track ? next : std::nullopt;
+  const auto next = timeline.estimate_after(estimator, row.sample.t_ns);
+  if (!next || next->sample.map_id != row.sample.map_id) return std::nullopt;
+  // Stamps are rounded to 1 ns: two frames may be 1 ns further apart than the first two.
+  const bool next_frame = next->sample.frame == row.sample.frame + 1 ||
+                          next->sample.t_ns - row.sample.t_ns <= frame_period_ns(timeline) + 1;
+  return next_frame ? next : std::nullopt;
 }
 
 }  // namespace

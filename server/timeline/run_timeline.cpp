@@ -133,6 +133,17 @@ std::optional<EstimateRow> RunTimeline::estimate_at(std::size_t estimator,
       estimates_.at(estimator).rows, t_ns, [](const EstimateRow& row) { return row.sample.t_ns; });
 }
 
+std::optional<EstimateRow> RunTimeline::estimate_after(std::size_t estimator,
+                                                       std::int64_t t_ns) const {
+  const std::lock_guard lock(mutex_);
+  const auto& rows = estimates_.at(estimator).rows;
+  const auto after =
+      std::upper_bound(rows.begin(), rows.end(), t_ns, [](std::int64_t t, const EstimateRow& row) {
+        return t < row.sample.t_ns;
+      });
+  return after == rows.end() ? std::nullopt : std::optional(*after);
+}
+
 std::optional<StampedImage> RunTimeline::live_camera(std::size_t camera) const {
   const std::lock_guard lock(mutex_);
   return cameras_.at(camera).live;

@@ -71,6 +71,9 @@ class RunTimeline {
                                                  std::size_t camera = kMainCamera) const;
   [[nodiscard]] std::optional<EstimateRow> estimate_at(std::size_t estimator,
                                                        std::int64_t t_ns) const;
+  /// Row of the first answer stamped after t; empty after the last.
+  [[nodiscard]] std::optional<EstimateRow> estimate_after(std::size_t estimator,
+                                                          std::int64_t t_ns) const;
 
   /// The latest images of a live run; empty after it.
   [[nodiscard]] std::optional<StampedImage> live_camera(std::size_t camera = kMainCamera) const;

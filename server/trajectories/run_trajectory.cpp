@@ -8,7 +8,6 @@
 #include "core/text/shown_path.hpp"
 #include "evaluation/evaluation.hpp"
 #include "server/files/plain_name.hpp"
-#include "server/logs/upload_set.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_manifest.hpp"
 #include "server/scoring/run_metrics_json.hpp"

@@ -10,7 +10,6 @@
 #include "core/text/shown_path.hpp"
 #include "core/time.hpp"
 #include "server/files/data_files.hpp"
-#include "server/logs/upload_set.hpp"
 #include "server/trajectories/run_trajectory.hpp"
 #include "server/trajectories/trajectory_tables.hpp"
 

@@ -28,6 +28,7 @@ renderer::Ribbon ribbon_of(const std::vector<std::int64_t>& stamps_ns,
 
 ViewRibbons::ViewRibbons(std::shared_ptr<const RunTimeline> timeline, std::string alignment)
     : timeline_(std::move(timeline)),
+      metrics_(timeline_->metrics()),
       alignment_(std::move(alignment)),
       box_min_(Eigen::Vector3d::Constant(kFar)),
       box_max_(Eigen::Vector3d::Constant(-kFar)),

@@ -41,6 +41,9 @@ class ViewRibbons {
   [[nodiscard]] Eigen::Vector3d centre() const;
   [[nodiscard]] const std::shared_ptr<const RunTimeline>& timeline() const { return timeline_; }
   [[nodiscard]] const std::string& alignment() const { return alignment_; }
+  /// The run has been scored, or scored again, since these ribbons were made: their alignments are
+  /// of the earlier score.
+  [[nodiscard]] bool is_outdated() const { return timeline_->metrics() != metrics_; }
   /// Empty if the estimate has no such alignment.
   [[nodiscard]] const std::optional<RowAlignment>& alignment_of(std::size_t estimator) const {
     return estimates_.at(estimator).alignment;
@@ -68,6 +71,7 @@ class ViewRibbons {
   void refresh_estimate(std::size_t estimator);
 
   std::shared_ptr<const RunTimeline> timeline_;
+  std::shared_ptr<const RunMetrics> metrics_;  ///< that the alignments are of
   std::string alignment_;
   std::size_t rows_seen_ = 0;
   Piece truth_;

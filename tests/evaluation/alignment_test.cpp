@@ -365,5 +365,25 @@ TEST(Alignment, InitScaleWithoutADepthIsThePathRatioAndSaysSo) {
   }
 }
 
+/// Poses of files without times count as 1 s apart: 5 of them are no 5 s.
+TEST(Alignment, InitScaleWithoutTimesIsThePathRatioOfFiftySteps) {
+  const Trajectory truth = wavy_truth(100);
+  EstimateTrack track = seen_from(truth, some_similarity());
+  for (std::size_t i = 51; i < track.samples.size(); ++i) {
+    track.samples[i].T_vo_camera.translation *= 10.0;
+  }
+  std::vector<MatchedPose> matches = matches_of(truth, track);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    matches[i].t_ns = static_cast<std::int64_t>(i) * kNsPerS;
+  }
+  Options options;
+  options.has_times = false;
+  AlignmentRemarks remarks;
+  const auto found = align(matches, AlignmentMode::kInitScale, options, &remarks);
+  ASSERT_TRUE(found.ok());
+  EXPECT_NEAR(found->scale, some_similarity().scale, 1e-9);
+  EXPECT_THAT(remarks.notes.at(0), HasSubstr("the first 50 steps (times are not known)"));
+}
+
 }  // namespace
 }  // namespace overfly::evaluation

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "evaluation/errors.hpp"
@@ -74,6 +75,36 @@ TEST(FixDrift, OfAConstantHeadingDriftIsThatOfAnArc) {
   EXPECT_NEAR(drifts[1].median_m, 40.0, 0.02);
   EXPECT_EQ(drifts[2].unavailable, "the scored path is 2500 m long");
   EXPECT_EQ(drifts[2].segments, 0);
+}
+
+/// A loop of 1.5 km is flown while the estimator is lost.
+TEST(FixDrift, CountsThePathThatIsFlownWhileLost) {
+  constexpr int kSteps = 600;
+  std::vector<StampedPose> truth;
+  EstimateTrack estimate;
+  for (int i = 0; i < kSteps; ++i) {
+    // 10 m a second; between 200 and 350 s once around.
+    const double angle = 2.0 * M_PI * std::clamp((i - 200) / 150.0, 0.0, 1.0);
+    const double radius_m = 1500.0 / (2.0 * M_PI);
+    const double straight_m = 10.0 * (std::min(i, 200) + std::max(i - 350, 0));
+    Pose pose;
+    pose.translation = {
+        straight_m + radius_m * std::sin(angle), radius_m * (1.0 - std::cos(angle)), 300.0};
+    truth.push_back({i * std::int64_t{1'000'000'000}, pose});
+    EstimateSample sample;
+    sample.frame = i;
+    sample.t_ns = truth.back().t_ns;
+    sample.state = i > 200 && i < 350 ? TrackingState::kLost : TrackingState::kTracking;
+    sample.T_vo_camera = pose;
+    estimate.samples.push_back(sample);
+  }
+  const auto matches =
+      associate(Trajectory::from_poses(truth).value(), estimate, Options()).value();
+  std::vector<Pose> perfect;
+  for (const MatchedPose& match : matches) perfect.push_back(match.T_vo_camera);
+  const std::vector<FixDrift> drifts = fix_drifts(matches, perfect, {5000.0, 7000.0});
+  EXPECT_GT(drifts[0].segments, 0) << "the straight parts alone are 4490 m long";
+  EXPECT_EQ(drifts[1].unavailable, "the scored path is 5989 m long");
 }
 
 /// A wrong place and attitude that do not change are removed by every fix.

@@ -92,6 +92,17 @@ TEST_F(WindowErrorsOfAFlight, LeaveOutInstantsWithoutAnEstimate) {
   EXPECT_FALSE(relative_errors_along(pairs)[400]) << "another map";
 }
 
+/// Where the estimate lacks more than a second, the true path is not known.
+TEST_F(WindowErrorsOfAFlight, BeginAgainAfterALongGap) {
+  for (std::size_t k = 350; k < 350 + kMaxGapPoses; ++k) pairs[k].reset();
+  const auto errors = relative_errors_along(pairs);
+  EXPECT_FALSE(errors[390]);
+  std::size_t again = 350 + kMaxGapPoses;
+  while (!errors[again]) ++again;
+  const double path_m = 1.37 * static_cast<double>(again - 350 - kMaxGapPoses);
+  EXPECT_NEAR(path_m, kErrorWindow_m, 2.0);
+}
+
 /// The window is searched among the same number of poses, whatever is before it.
 TEST_F(WindowErrorsOfAFlight, OfAVehicleThatIsSlowAreEmpty) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {

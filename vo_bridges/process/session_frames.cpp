@@ -191,7 +191,7 @@ Result<std::optional<VoEstimate>> Session::track(const VoFrame& newest, bool deb
   if (*answer) return answer;
   const double silent_s = std::chrono::duration<double>(Clock::now() - sent_at_).count();
   if (silent_s < kTimeoutsToGiveUp * options_.answer_timeout_s) return std::optional<VoEstimate>{};
-  return end({ErrorCode::kInternal,
+  return end({ErrorCode::kTimeout,
               "the estimator hangs: frame " + std::to_string(under_way_->index) +
                   " was not answered within " + duration_text(silent_s)});
 }

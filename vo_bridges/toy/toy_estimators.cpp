@@ -94,9 +94,17 @@ class ToyEstimator final : public VoPort {
 Result<std::unique_ptr<VoPort>> create(std::string type,
                                        ToyTruthAt truth,
                                        const ToyParameters& parameters) {
+  if (Status status = check_toy_parameters(parameters); !status) return status.error();
+  return std::unique_ptr<VoPort>(
+      std::make_unique<ToyEstimator>(std::move(type), std::move(truth), parameters));
+}
+
+}  // namespace
+
+Status check_toy_parameters(const ToyParameters& parameters) {
   const auto bad = [](const std::string& field, double value, const std::string& limit) {
     return Error{ErrorCode::kInvalidArgument,
-                 field + " = " + std::to_string(value) + ": must be " + limit};
+                 "parameters." + field + " = " + std::to_string(value) + ": must be " + limit};
   };
   if (!(parameters.scale > 0.0) || !std::isfinite(parameters.scale)) {
     return bad("scale", parameters.scale, "above 0 and finite");
@@ -108,11 +116,8 @@ Result<std::unique_ptr<VoPort>> create(std::string type,
   if (!(depth_m >= 0.0) || !std::isfinite(depth_m)) {
     return bad("scene_depth_m", depth_m, "0 or more and finite");
   }
-  return std::unique_ptr<VoPort>(
-      std::make_unique<ToyEstimator>(std::move(type), std::move(truth), parameters));
+  return {};
 }
-
-}  // namespace
 
 Result<std::unique_ptr<VoPort>> create_perfect_estimator(ToyTruthAt truth,
                                                          const ToyParameters& parameters) {

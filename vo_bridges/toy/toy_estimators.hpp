@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/motion/pose.hpp"
+#include "core/result.hpp"
 #include "vo_bridges/vo_port.hpp"
 
 namespace overfly {
@@ -21,6 +22,9 @@ struct ToyParameters {
   std::optional<double> scene_depth_m;
 };
 
+/// Errors: kInvalidArgument "parameters.FIELD = VALUE: must be LIMIT".
+[[nodiscard]] Status check_toy_parameters(const ToyParameters& parameters);
+
 /// The truth of one image.
 struct ToyTruth {
   Pose T_world_camera;
@@ -31,7 +35,7 @@ struct ToyTruth {
 /// of the estimator.
 using ToyTruthAt = std::function<std::optional<ToyTruth>(std::int64_t t_ns)>;
 
-/// Returns the truth ("perfect").
+/// Returns the truth ("perfect"). Errors here and below: as check_toy_parameters.
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_perfect_estimator(
     ToyTruthAt truth, const ToyParameters& parameters);
 

@@ -183,11 +183,12 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("evaluate", "Score trajectories against the truth");
   command->add_option("--truth", arguments->truth, "Trajectory file: TUM, KITTI, EuRoC or CSV");
   command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
-  command
-      ->add_option(
-          "--run", arguments->run, "Run folder to score again; its metrics.json is updated")
-      ->excludes("--truth")
-      ->excludes("--estimate");
+  CLI::Option* const run =
+      command
+          ->add_option(
+              "--run", arguments->run, "Run folder to score again; its metrics.json is updated")
+          ->excludes("--truth")
+          ->excludes("--estimate");
   std::vector<std::string> modes = alignment_mode_names();
   modes.emplace_back("all");
   arguments->alignments = {"init_scale"};
@@ -197,23 +198,28 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--association", arguments->association, "How poses are matched in time")
       ->check(CLI::IsMember({"interpolate", "nearest", "index"}))
+      ->excludes(run)
       ->capture_default_str();
   command
       ->add_option("--max-time-difference-ms",
                    arguments->max_time_difference_ms,
                    "Limit for --association nearest")
       ->check(CLI::NonNegativeNumber)
+      ->excludes(run)
       ->capture_default_str();
   command
       ->add_option("--init-true-depth-m",
                    arguments->init_true_depth_m,
                    "True depth along the optical axis at the first pose, for init_scale; by "
                    "default the comment init_true_depth of the estimate's file")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--find-offsets",
-                    arguments->find_offsets,
-                    "Also look for offsets of the clock and of the camera's mount that explain "
-                    "errors");
+      ->check(CLI::PositiveNumber)
+      ->excludes(run);
+  command
+      ->add_flag("--find-offsets",
+                 arguments->find_offsets,
+                 "Also look for offsets of the clock and of the camera's mount that explain "
+                 "errors")
+      ->excludes(run);
   command->add_flag("--json", arguments->json, "Print JSON");
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }

@@ -87,9 +87,7 @@ Result<ClientSweep> read_client_sweep(RunManager& runs,
   // The check goes on in flight, when nobody reads the refusal any more.
   const auto found = std::make_shared<std::atomic<SweepRefusal>>(SweepRefusal::kNone);
   sweep->check = [&runs, reach = std::move(reach), found](const Scenario& scenario) -> Status {
-    Status allowed = reach ? reach(scenario) : Status();
-    if (!allowed) *found = SweepRefusal::kForbidden;
-    if (!allowed) return allowed;
+    if (Status allowed = reach ? reach(scenario) : Status(); !allowed) return allowed;
     Status fits = runs.check_memory(scenario);
     if (!fits) *found = SweepRefusal::kMemory;
     return fits;

@@ -16,10 +16,9 @@ namespace overfly::server::experiments {
 /// Why a sweep is not flown, in addition to the error.
 enum class SweepRefusal {
   kNone,
-  kOff,        ///< the server has no folder of sweeps
-  kForbidden,  ///< a command, an address or a file that only the owner may name
-  kMemory,     ///< a flight needs more memory than there is
-  kBusy,       ///< another sweep flies
+  kOff,     ///< the server has no folder of sweeps
+  kMemory,  ///< a flight needs more memory than there is
+  kBusy,    ///< another sweep flies
 };
 
 /// A sweep that the server may fly.

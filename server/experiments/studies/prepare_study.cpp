@@ -50,10 +50,7 @@ class Preparation {
 
   /// Commands, addresses and memory of a scenario that was read already.
   Status check(const Scenario& scenario) {
-    if (Status allowed = runs_.library().reach_check()(scenario); !allowed) {
-      refusal_ = StudyRefusal::kForbidden;
-      return allowed;
-    }
+    if (Status allowed = runs_.library().reach_check()(scenario); !allowed) return allowed;
     return check_memory(scenario);
   }
 
@@ -134,12 +131,6 @@ class Preparation {
   /// The scenario of a prediction or a hunt, checked; also written as input.
   Result<Scenario> read(const StudyScenario& asks) {
     const ScenarioLibrary& library = runs_.library();
-    const Status reach = asks.document ? library.check_reach(*asks.document)
-                                       : library.check_reach(asks.name, asks.overrides);
-    if (!reach) {
-      refusal_ = StudyRefusal::kForbidden;
-      return reach.error();
-    }
     Result<Scenario> scenario =
         asks.document ? library.read(*asks.document) : library.load(asks.name, asks.overrides);
     if (!scenario) return scenario.error();
@@ -184,10 +175,7 @@ class Preparation {
     const auto reach = runs_.library().reach_check();
     const auto check_flight = [&](const Scenario& flight) -> Status {
       if (is_cancelled(cancel_)) return Error{ErrorCode::kCancelled, "the client has gone"};
-      if (Status allowed = reach(flight); !allowed) {
-        refusal_ = StudyRefusal::kForbidden;
-        return allowed;
-      }
+      if (Status allowed = reach(flight); !allowed) return allowed;
       return check_memory(flight);
     };
     const Result<Hunt> hunt = resolve_hunt(document,

@@ -91,10 +91,9 @@ struct StudyRequest {
 /// Why a study is not made, in addition to the error.
 enum class StudyRefusal {
   kNone,
-  kOff,        ///< the server has no folder of studies
-  kForbidden,  ///< a command or an address that only the owner may name
-  kMemory,     ///< a flight needs more memory than there is
-  kFull,       ///< too many wait, or too many are kept
+  kOff,     ///< the server has no folder of studies
+  kMemory,  ///< a flight needs more memory than there is
+  kFull,    ///< too many wait, or too many are kept
 };
 
 }  // namespace overfly::server::experiments

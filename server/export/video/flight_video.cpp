@@ -54,7 +54,12 @@ Status FlightVideo::finish(const FrameRate& rate) {
 }
 
 Result<Image> FlightVideo::compose(const MadeFrame& frame) {
-  const Image& seen = frame.shots.front().image;
+  const CameraShot& shot = frame.shots.front();
+  // A recorded image that could not be read is black.
+  const PinholeCamera& camera_size = shot.drawn.camera.pinhole();
+  const Image missing =
+      shot.image.empty() ? Image(camera_size.width_px, camera_size.height_px, 1) : Image();
+  const Image& seen = shot.image.empty() ? missing : shot.image;
   const int factor = (seen.height_px + look_.max_height_px - 1) / look_.max_height_px;
   Image camera = panel_from(seen, factor);
   if (look_.view == VideoView::kCamera) return camera;

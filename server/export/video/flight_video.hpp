@@ -30,7 +30,8 @@ struct VideoLook {
 };
 
 /// Time stamps in the file are those of the flight, in milliseconds, relative to the first frame
-/// shown. Images that were not delivered are shown too, since the video is for human viewers.
+/// shown. Images that were not delivered are shown too, since the video is for human viewers;
+/// recorded images that cannot be read are black.
 class FlightVideo {
  public:
   /// @param file  appears whole, at `finish`

@@ -15,6 +15,8 @@ int status_of(ErrorCode code) {
   switch (code) {
     case ErrorCode::kInvalidArgument:
       return 400;
+    case ErrorCode::kForbidden:
+      return 403;
     case ErrorCode::kNotFound:
       return 404;
     case ErrorCode::kConflict:
@@ -24,6 +26,7 @@ int status_of(ErrorCode code) {
     case ErrorCode::kUnreadable:
     case ErrorCode::kIo:
     case ErrorCode::kUnsupported:
+    case ErrorCode::kTimeout:
     case ErrorCode::kInternal:
       return 500;
   }

@@ -21,7 +21,6 @@ HttpResponse study_refused(StudyRefusal refusal, const Error& error) {
     case StudyRefusal::kNone:
       break;
     case StudyRefusal::kOff:
-    case StudyRefusal::kForbidden:
       return error_response(403, "forbidden", error.message);
     case StudyRefusal::kMemory:
       return error_response(422, "not_enough_memory", error.message);

@@ -73,7 +73,6 @@ HttpResponse sweep_refused(SweepRefusal refusal, const Error& error) {
     case SweepRefusal::kNone:
       break;
     case SweepRefusal::kOff:
-    case SweepRefusal::kForbidden:
       return error_response(403, "forbidden", error.message);
     case SweepRefusal::kMemory:
       return error_response(422, "not_enough_memory", error.message);

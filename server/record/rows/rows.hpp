@@ -75,6 +75,7 @@ struct EstimateRecord {
   std::map<std::string, double> counters;
   bool dropped = false;
   std::string crash;  ///< why the estimator ended, at the frame where it ended; else empty
+  bool hung = false;  ///< with `crash`: it was ended because it did not answer
   /// Of the image as received by the estimator; empty if not reported.
   std::optional<std::uint32_t> image_crc32;
 };

@@ -81,6 +81,7 @@ Json json_from(const EstimateRecord& record) {
   if (!record.counters.empty()) value["counters"] = record.counters;
   if (record.image_crc32) value["image_crc32"] = hex_text(*record.image_crc32);
   if (!record.crash.empty()) value["crash"] = record.crash;
+  if (record.hung) value["hung"] = true;
   return value;
 }
 

@@ -20,7 +20,6 @@ namespace overfly::server {
 
 // The inverse. Errors: kUnreadable naming the field.
 [[nodiscard]] Result<Pose> pose_from(const nlohmann::json& value);
-[[nodiscard]] Result<PinholeCamera> camera_from(const nlohmann::json& value);
 /// Without distortion if none is given.
 [[nodiscard]] Result<CameraModel> camera_model_from(const nlohmann::json& value);
 /// `T_body_camera` is used to compute the row's body pose.

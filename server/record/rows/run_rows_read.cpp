@@ -165,6 +165,8 @@ EstimateRecord read_estimate(const FileField& value) {
     }
   }
   record.crash = text_or_empty(value, "crash");
+  const auto hung = value.find("hung");
+  record.hung = hung && hung->boolean();
   record.image_crc32 = crc32_or_none(value);
   return record;
 }
@@ -173,10 +175,6 @@ EstimateRecord read_estimate(const FileField& value) {
 
 Result<Pose> pose_from(const Json& value) {
   return guarded_fields([&] { return read_pose(FileField(value)); });
-}
-
-Result<PinholeCamera> camera_from(const Json& value) {
-  return guarded_fields([&] { return read_pinhole(FileField(value)); });
 }
 
 Result<CameraModel> camera_model_from(const Json& value) {

@@ -91,7 +91,7 @@ std::string outcome_words(const EstimatorMetrics& metrics) {
     case evaluation::Outcome::kCrashed:
       return "ended by itself" + at;
     case evaluation::Outcome::kTimeout:
-      return "took too long";
+      return "stopped answering and was ended" + at;
   }
   return "";
 }

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 Error bad_path(const std::string& path, const std::string& why) {
-  return {ErrorCode::kInvalidArgument, "--set " + path + ": " + why};
+  return {ErrorCode::kInvalidArgument, "override \"" + path + "\": " + why};
 }
 
 std::vector<std::string> split(const std::string& path) {
@@ -41,7 +41,7 @@ std::optional<std::size_t> index_from(const std::string& text) {
 void make_room_for_kind(Json& document, const std::vector<std::string>& parts) {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> kinds = {
       {"world", {"builtin", "manifest", "imagery"}},
-      {"flight", {"course", "log", "mavlink", "ros", "mission"}}};
+      {"flight", {"course", "log", "mavlink", "ros", "mission", "run"}}};
   // A document has either `camera` or `cameras`: setting the whole of one removes the other.
   if (parts.size() == 1 && parts[0] == "cameras") document.erase("camera");
   if (parts.size() == 1 && parts[0] == "camera") document.erase("cameras");
@@ -58,12 +58,12 @@ void make_room_for_kind(Json& document, const std::vector<std::string>& parts) {
 Result<Override> parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    return Error{ErrorCode::kInvalidArgument, "--set " + text + ": must be path=value"};
+    return Error{ErrorCode::kInvalidArgument, text.substr(0, 100) + ": must be path=value"};
   }
   Override change;
   change.path = text.substr(0, equals);
   const std::string value = text.substr(equals + 1);
-  if (Status status = check_json_depth(value, "--set " + change.path); !status) {
+  if (Status status = check_json_depth(value, change.path); !status) {
     return Error{ErrorCode::kInvalidArgument, status.error().message};
   }
   Result<Json> json = json_from_outside<Json>(value, "");
@@ -75,7 +75,7 @@ Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& te
   std::vector<Override> changes;
   for (const std::string& text : texts) {
     Result<Override> change = parse_override(text);
-    if (!change) return change.error();
+    if (!change) return change.error().in("--set");
     changes.push_back(std::move(*change));
   }
   return changes;

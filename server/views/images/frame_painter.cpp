@@ -79,6 +79,11 @@ Status check_pixel(const PixelRequest& request, const PinholeCamera& camera) {
   return check("y_px", request.y_px, camera.height_px);
 }
 
+/// The pixel that contains a coordinate of [-0.5, size_px - 0.5).
+int nearest_pixel(double coordinate_px, int size_px) {
+  return std::clamp(static_cast<int>(std::lround(coordinate_px)), 0, size_px - 1);
+}
+
 /// The grey level and, of a colour image, the colour of a pixel.
 void read_pixel(const Image& image, int x_px, int y_px, PixelValue* value) {
   Image one(1, 1, image.channels);
@@ -183,8 +188,8 @@ FramePainter::Probed FramePainter::probe(const PixelRequest& request) {
   if (!image) return image.error();
   if (!*image) return std::optional<PixelValue>();
   const Image& whole = ***image;
-  const int x_px = std::min(static_cast<int>(std::lround(request.x_px)), whole.width_px - 1);
-  const int y_px = std::min(static_cast<int>(std::lround(request.y_px)), whole.height_px - 1);
+  const int x_px = nearest_pixel(request.x_px, whole.width_px);
+  const int y_px = nearest_pixel(request.y_px, whole.height_px);
   PixelValue value;
   value.frame = row->frame;
   value.t_ns = row->t_ns;
@@ -195,6 +200,12 @@ FramePainter::Probed FramePainter::probe(const PixelRequest& request) {
   if (request.error) {
     const auto view = compared_view(*request.error, **timeline, request.alignment, frame);
     if (!view) return view.error();
+    if (view->frame.camera != *camera) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "picture: estimator \"" + (*timeline)->estimators()[*request.error->estimator] +
+                       "\" uses camera \"" + (*timeline)->cameras()[view->frame.camera].name +
+                       "\", but the pixel is of camera \"" + seen_by.name + "\""};
+    }
     const auto difference = images_.difference_at(view->frame, view->comparison, x_px, y_px);
     if (!difference) return difference.error();
     if (!*difference) return std::optional<PixelValue>();

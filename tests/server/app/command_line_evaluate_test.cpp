@@ -69,6 +69,35 @@ TEST_F(CommandLine, EvaluateScoresTrajectoryFilesAndRejectsInvalidOnes) {
   EXPECT_THAT(broken.err, HasSubstr("broken.tum"));
 }
 
+/// KITTI's poses without times.txt: nothing may be concluded from seconds.
+TEST_F(CommandLine, EvaluateConcludesNothingFromTimesThatAFileDoesNotHave) {
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i < 120; ++i) {
+    const auto line = [](double x) { return "1 0 0 " + std::to_string(x) + " 0 1 0 0 0 0 1 0\n"; };
+    truth += line(0.3 * i);
+    // The scale grows threefold: over 10 s that would be a divergence.
+    estimate += line(0.3 * i * (1.0 + i / 60.0));
+  }
+  write_text(path("truth.txt"), truth);
+  write_text(path("estimate.txt"), estimate);
+  const Outcome scored = overfly_program(
+      {"evaluate", "--truth", path("truth.txt"), "--estimate", path("estimate.txt"), "--json"});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json score = Json::parse(scored.out).at("estimates").at(0);
+  EXPECT_TRUE(score.at("diverged_at_s").is_null());
+  const Json& aligned = score.at("alignments").at("init_scale");
+  EXPECT_THAT(aligned.at("notes").dump(), HasSubstr("the first 50 steps"));
+  // Steps of 0.3 m give the direction of the path: east, not that of the camera's nose.
+  EXPECT_GT(aligned.at("along_rmse_m"), 1.0);
+  EXPECT_LT(aligned.at("across_rmse_m"), 1e-6);
+  // What belongs to files is refused for a run instead of being ignored.
+  const Outcome mixed =
+      overfly_program({"evaluate", "--run", path("r"), "--init-true-depth-m", "300"});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_THAT(mixed.err, HasSubstr("--init-true-depth-m"));
+}
+
 TEST_F(CommandLine, EvaluateTellsTheDriftBetweenPositionFixes) {
   std::string truth;
   std::string estimate;

@@ -113,6 +113,9 @@ TEST(EurocLayout, SaysWhatIsBroken) {
   DatasetOptions other = options_of(folder.path());
   other.camera_name = "cam1";
   EXPECT_THAT(error_of(other), HasSubstr("cam1/data.csv: no such file"));
+  // A client's text must not lead out of the folder.
+  other.camera_name = "../../etc";
+  EXPECT_THAT(error_of(other), HasSubstr("camera name = \"../../etc\": must be"));
   fs::remove(folder.path() / sensor);
   EXPECT_THAT(error_of(options_of(folder.path())), HasSubstr("sensor.yaml: no such file"));
 }

@@ -110,6 +110,11 @@ TEST_F(CameraCheck, NamesBadOptionsAndFlightsTooShort) {
       check_camera(testing::small_scenario({"duration_s=0.01", "camera.rate_hz=1"}), options);
   ASSERT_FALSE(instant.ok());
   EXPECT_THAT(instant.error().message, HasSubstr("fewer than two frames"));
+  const auto live =
+      check_camera(testing::small_scenario(
+                       {R"(flight={"mavlink":{"link":"tcp:127.0.0.1:1","patience_s":0.1}})"}),
+                   options);
+  ASSERT_FALSE(live.ok());
   // Patterns of the pose alone have no ground to find again: the test must not pass them.
   const auto blank = check_camera(testing::small_scenario(), options);
   ASSERT_TRUE(blank.ok()) << blank.error().message;

@@ -48,6 +48,32 @@ TEST(VideoExport, ShowsWhatTheCameraSaw) {
   }
 }
 
+TEST(VideoExport, ShowsARecordedImageThatCannotBeReadAsBlack) {
+  const TemporaryFolder folder;
+  std::string times;
+  fs::create_directories(folder.path() / "images");
+  for (int k = 0; k < 8; ++k) {
+    const fs::path file = folder.path() / "images" / ("00" + std::to_string(k) + ".png");
+    Image image(160, 120, 1);
+    std::fill(image.data.begin(), image.data.end(), std::uint8_t{200});
+    ASSERT_TRUE(write_png_file(file, image).ok());
+    if (k == 4) overfly::testing::write_text(file, "no image");
+    times += std::to_string(0.1 * k) + "\n";
+  }
+  overfly::testing::write_text(folder.path() / "times.txt", times);
+  const ExportSource source =
+      small_source({"camera.images.source=" + (folder.path() / "images").string(),
+                    "camera.images.times=" + (folder.path() / "times.txt").string()});
+  const VideoOptions options = video_options(folder.path() / "seen.webm", VideoView::kCamera);
+  const auto summary = export_video(source, options);
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  const auto images = testing::decode_vp9(testing::read_webm(options.file).packets);
+  ASSERT_EQ(images.size(), 8U);
+  EXPECT_GT(images[3].y[0], 150);
+  EXPECT_LT(images[4].y[0], 40);
+  EXPECT_GT(images[5].y[0], 150);
+}
+
 TEST(VideoExport, PutsTheChaseViewBesideTheCamera) {
   if (const auto egl = renderer::probe_egl(); !egl) GTEST_SKIP() << egl.error().message;
   const TemporaryFolder folder;

@@ -7,8 +7,10 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
+#include <chrono>
 #include <list>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include "tests/server/net/test_client.hpp"
@@ -110,11 +112,13 @@ class RawConnection {
         boost::asio::read_until(socket_, boost::asio::dynamic_buffer(head), "\r\n\r\n", error);
     return head.substr(0, size);
   }
-  /// Waits for the server to close the connection.
-  void read_to_end() {
+  /// Waits for the server to close the connection. @return number of bytes until then
+  std::size_t read_to_end() {
     boost::system::error_code error;
     std::array<char, 4096> bytes{};
-    while (!error) socket_.read_some(boost::asio::buffer(bytes), error);
+    std::size_t count = 0;
+    while (!error) count += socket_.read_some(boost::asio::buffer(bytes), error);
+    return count;
   }
 
  private:
@@ -153,6 +157,21 @@ TEST(Connections, ThatAreKeptAliveGoOldestFirst) {
   kept.front().read_to_end();
   kept.back().send(kHealth);
   EXPECT_EQ(kept.back().read_head().substr(0, 12), "HTTP/1.1 200");
+}
+
+/// A large answer takes longer than connections may be idle.
+TEST(Connections, ThatReceiveSlowlyReceiveEverything) {
+  ServerLimits limits;
+  limits.idle_ms = 300;
+  limits.min_answer_bytes_per_s = 1 << 20;
+  TestServer server(limits);
+  // More than the buffers of the sockets.
+  constexpr std::size_t kBytes = std::size_t{32} << 20U;
+  overfly::testing::write_text(server.folder() / "web" / "large.js", std::string(kBytes, 'x'));
+  RawConnection slow(server.port());
+  slow.send("GET /large.js HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(900));
+  EXPECT_GT(slow.read_to_end(), kBytes);
 }
 
 TEST(Connections, ThatSendTheirBodySlowlyKeepNobodyOut) {

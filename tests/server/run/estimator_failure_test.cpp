@@ -50,6 +50,18 @@ TEST(EstimatorRun, OneWithoutAUsablePoseForLongCountsAsCrashed) {
   EXPECT_THAT(score.crash.value_or(""), HasSubstr("30 answers in a row had no usable pose"));
 }
 
+TEST(EstimatorRun, OneThatHangsHasTheOutcomeTimeout) {
+  WitnessRun flight;
+  flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};
+  flight.behaviours["a"].hangs = 9;
+  const RunResult run = flight.fly();
+  const EstimatorMetrics& score = run.metrics.estimators.at("a");
+  EXPECT_EQ(score.score.outcome, evaluation::Outcome::kTimeout);
+  EXPECT_EQ(score.score.outcome_time_s, 0.9);
+  EXPECT_EQ(score.crash, "it hangs");
+  EXPECT_TRUE(flight.records().estimators[0].records.at(9).hung);
+}
+
 TEST(EstimatorRun, OneThatDoesNotStartIsCrashedAndTheOthersFly) {
   const TemporaryFolder folder;
   RunOptions options;

@@ -3,15 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <functional>
 #include <new>
 #include <system_error>
+#include <vector>
 
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/run/run_options.hpp"
+#include "server/run/run_recorder.hpp"
 #include "server/runs/run_memory.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 #include "vo_bridges/vo_port.hpp"
@@ -22,6 +28,37 @@ namespace {
 namespace fs = std::filesystem;
 using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
+
+/// Leaves this process two more files to open, as long as it lives.
+class FewFiles {
+ public:
+  FewFiles() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit few = before_;
+    few.rlim_cur = 256;
+    ::setrlimit(RLIMIT_NOFILE, &few);
+    for (int file = 0; file >= 0;) {
+      file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+      if (file >= 0) files_.push_back(file);
+    }
+    for (int i = 0; i < 2; ++i) close_one();
+  }
+  ~FewFiles() {
+    while (!files_.empty()) close_one();
+    ::setrlimit(RLIMIT_NOFILE, &before_);
+  }
+  FewFiles(const FewFiles&) = delete;
+  FewFiles& operator=(const FewFiles&) = delete;
+
+ private:
+  void close_one() {
+    ::close(files_.back());
+    files_.pop_back();
+  }
+
+  rlimit before_{};
+  std::vector<int> files_;
+};
 
 [[noreturn]] void throw_bad_alloc() { throw std::bad_alloc(); }
 [[noreturn]] void throw_no_thread() {
@@ -195,6 +232,19 @@ TEST_F(RunFailureOfManager, RunsWaitForEachOthersMemory) {
   EXPECT_EQ(runs->run(second).value().status, RunStatus::kQueued);
   EXPECT_TRUE(runs->cancel(first).ok());
   EXPECT_EQ(wait_for_end(*runs, second).status, RunStatus::kCompleted);
+}
+
+TEST(RunFailure, ARunThatCannotBeginLeavesNothingThatLooksLikeOne) {
+  const TemporaryFolder folder;
+  const Scenario scenario = testing::small_scenario();
+  {
+    const FewFiles few;
+    const auto recorder = RunRecorder::create(folder.path() / "r", scenario, nullptr, false);
+    ASSERT_FALSE(recorder.ok());
+    EXPECT_THAT(recorder.error().message, HasSubstr("Too many open files"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path() / "r"));
+  EXPECT_TRUE(RunRecorder::create(folder.path() / "r", scenario, nullptr, false).ok());
 }
 
 }  // namespace

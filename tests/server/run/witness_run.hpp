@@ -45,6 +45,7 @@ class Witness final : public VoPort {
     std::vector<std::string> log = {};   ///< log lines at its first frame
     std::string unready = {};            ///< error of prepare(); empty = ready
     std::int64_t cancelled = -1;         ///< frame in which it is cancelled
+    std::int64_t hangs = -1;             ///< frame at which it is ended because it hangs
   };
   using Seen = std::map<std::int64_t, std::uint32_t>;
   Witness(Behaviour behaviour, Seen& seen) : behaviour_(std::move(behaviour)), seen_(seen) {}
@@ -64,6 +65,7 @@ class Witness final : public VoPort {
       said_ = behaviour_.log;
     }
     if (frame.index == behaviour_.cancelled) return Error{ErrorCode::kCancelled, "stopped"};
+    if (frame.index == behaviour_.hangs) return Error{ErrorCode::kTimeout, "it hangs"};
     seen_[frame.index] = plain_crc32(frame.image->data);
     if (behaviour_.work_ns > 0) {
       behaviour_.clock->sleep_until_ns(behaviour_.clock->now_ns() + behaviour_.work_ns);

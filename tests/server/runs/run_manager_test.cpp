@@ -88,12 +88,13 @@ TEST_F(RunManagerTest, OpensOnlyTheLinksThatTheOperatorAllows) {
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kFailed);  // nobody listens
   // Another link, or what the vehicle has to do, only as in the scenario's file.
-  EXPECT_TRUE(runs->library().check_reach("live", {{"duration_s", 1}}).ok());
-  EXPECT_THAT(
-      runs->library().check_reach("live", {{"flight.mavlink.arm_and_start", true}}).error().message,
-      HasSubstr("flight.mavlink: must be as in the scenario's file"));
-  EXPECT_FALSE(
-      runs->library().check_reach("small", {{"flight.mavlink.link", "tcp:127.0.0.1:1"}}).ok());
+  EXPECT_TRUE(runs->library().load("live", {{"duration_s", 1}}).ok());
+  const auto arming = runs->library().load("live", {{"flight.mavlink.arm_and_start", true}});
+  EXPECT_EQ(arming.error().code, ErrorCode::kForbidden);
+  EXPECT_THAT(arming.error().message,
+              HasSubstr("flight.mavlink: must be as in the scenario's file"));
+  EXPECT_EQ(runs->start("small", {{"flight.mavlink.link", "tcp:127.0.0.1:1"}}).error().code,
+            ErrorCode::kForbidden);
 }
 
 TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
@@ -251,19 +252,19 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   overfly::testing::write_text(root() / "scenarios" / "doors.json", document.dump());
   const auto runs = manager();
   const auto check = [&](const char* text) {
-    return runs->library().check_reach("doors", {parse_override(text).value()});
+    return runs->library().load("doors", {parse_override(text).value()});
   };
   EXPECT_TRUE(check("duration_s=1").ok());
   EXPECT_TRUE(check(R"(estimators.0.parameters={"features":1000})").ok());
   EXPECT_TRUE(
       check(R"(estimators.1={"name":"c","type":"process","command":["./vo","--fast"]})").ok());
-  const Status other = check(R"(estimators.0.command=["./vo","--slow"])");
+  const auto other = check(R"(estimators.0.command=["./vo","--slow"])");
   ASSERT_FALSE(other.ok());
   EXPECT_THAT(other.error().message, HasSubstr("estimators.0.command"));
   EXPECT_FALSE(check(R"(estimators.0.command.0="/bin/sh")").ok());
   EXPECT_TRUE(trusting_manager()
                   ->library()
-                  .check_reach("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
+                  .load("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
                   .ok());
 }
 

@@ -150,17 +150,18 @@ TEST_F(ScenarioLibraryTest, GivesSavedScenariosNoMoreReachThanOverrides) {
   owned["estimators"] = {{{"name", "vo"}, {"type", "process"}, {"command", {"/bin/true"}}}};
   overfly::testing::write_text(root() / "scenarios" / "doors.json", owned.dump());
   const auto runs = saving_manager();
-  EXPECT_TRUE(runs->library().check_reach(owned).ok()) << "as in the owner's file";
+  EXPECT_TRUE(runs->library().read(owned).ok()) << "as in the owner's file";
   Json evil = owned;
   evil["estimators"][0]["command"] = {"/bin/sh"};
-  EXPECT_THAT(runs->library().check_reach(evil).error().message, HasSubstr("estimators.0.command"));
+  EXPECT_EQ(runs->library().read(evil).error().code, ErrorCode::kForbidden);
+  EXPECT_THAT(save(*runs, "evil", evil).error().message, HasSubstr("estimators.0.command"));
   Json live = testing::small_document();
   live["flight"] = {{"mavlink", {{"link", "tcp:127.0.0.1:1"}}}};
-  EXPECT_THAT(runs->library().check_reach(live).error().message, HasSubstr("flight.mavlink"));
+  EXPECT_THAT(runs->library().read(live).error().message, HasSubstr("flight.mavlink"));
   // Also where a file got there in another way: each flight is checked.
   fs::create_directories(saved());
   overfly::testing::write_text(saved() / "planted.json", evil.dump());
-  EXPECT_FALSE(runs->library().check_reach("planted", {}).ok());
+  EXPECT_EQ(runs->start("planted", {}).error().code, ErrorCode::kForbidden);
   // A saved scenario opens no data folder.
   Json data = testing::small_document();
   data["data"] = "/etc";

@@ -8,6 +8,7 @@
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scenario/document/scenario_list.hpp"
 #include "server/scenario/document/scenario_override.hpp"
+#include "server/scenario/document/scenario_schema.hpp"
 #include "server/scenario/scenario.hpp"
 #include "tests/support/support.hpp"
 
@@ -194,7 +195,7 @@ TEST(ScenarioOverride, IsJsonElseText) {
   const auto deep = parse_override("a=" + std::string(100'000, '['));
   ASSERT_FALSE(deep.ok());
   EXPECT_EQ(deep.error().code, ErrorCode::kInvalidArgument);
-  EXPECT_EQ(deep.error().message, "--set a: is nested more than 64 deep");
+  EXPECT_EQ(deep.error().message, "a: is nested more than 64 deep");
 }
 
 /// A path of `parts` parts.
@@ -243,6 +244,21 @@ TEST(ScenarioOverride, ReachesArraysAndReplacesTheKindOfWorld) {
   EXPECT_THAT(error_of(document, {"estimators.2.name=e"}), HasSubstr("must be a number in [0, 0]"));
   EXPECT_THAT(error_of(document, {"seed.x=1", "seed.y.z=2"}), HasSubstr("seed"));
   EXPECT_THAT(error_of(document, {"format_version.x=1"}), HasSubstr("not an object or array"));
+}
+
+/// Also those that are added to the schema later.
+TEST(ScenarioOverride, ReplacesEveryKindOfFlightAndWorld) {
+  const Json schema = Json::parse(scenario_schema_text());
+  for (const char* field : {"flight", "world"}) {
+    for (const Json& branch : schema.at("properties").at(field).at("oneOf")) {
+      const std::string place = branch.at("$ref");
+      const Json& kind = schema.at("$defs").at(place.substr(place.rfind('/') + 1));
+      const std::string name = kind.at("required").at(0);
+      Json document = {{field, {{"another", 1}}}};
+      ASSERT_TRUE(apply_override({std::string(field) + "." + name, Json::object()}, document).ok());
+      EXPECT_EQ(document, (Json{{field, {{name, Json::object()}}}})) << name;
+    }
+  }
 }
 
 TEST(ScenarioOverride, WholeCamerasTakeTheCamerasPlaceAndBack) {

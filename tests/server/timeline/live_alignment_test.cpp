@@ -61,7 +61,17 @@ TEST(LiveAlignment, StartsAnewWithANewMap) {
   ASSERT_TRUE(placed.has_value());
   EXPECT_NEAR(placed->translation.x(), 90.0, 1e-9);
   EXPECT_NEAR(alignment.S_world_vo()->scale, 100.0, 1e-9);
-  EXPECT_EQ(alignment.init_true_depth_m(), 300.0);
+}
+
+TEST(LiveAlignment, KeepsAMapsAlignmentWhenTheEstimatorReturnsToIt) {
+  LiveAlignment alignment{Pose{}};
+  ASSERT_TRUE(alignment.add(tracked(0, 0.0, 1.0), at_x(0), 300.0).has_value());
+  ASSERT_TRUE(alignment.add(tracked(2, 0.0, 2.0, 1), at_x(60), 300.0).has_value());
+  // The first map has drifted by 10 m when the estimator finds back into it.
+  const auto placed = alignment.add(tracked(3, 0.1, 2.0), at_x(40), 300.0);
+  ASSERT_TRUE(placed.has_value());
+  EXPECT_NEAR(placed->translation.x(), 30.0, 1e-9);
+  EXPECT_NEAR(alignment.S_world_vo()->scale, 300.0, 1e-9);
 }
 
 }  // namespace

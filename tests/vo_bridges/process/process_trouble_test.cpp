@@ -168,7 +168,7 @@ TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
     EXPECT_EQ(estimates[i]->sample.state, TrackingState::kLost);
   }
   ASSERT_FALSE(estimates[4].ok());
-  EXPECT_EQ(estimates[4].error().code, ErrorCode::kInternal);
+  EXPECT_EQ(estimates[4].error().code, ErrorCode::kTimeout);
   EXPECT_THAT(estimates[4].error().message,
               HasSubstr("hangs: frame 2 was not answered within 1.5 s; it last said: camera0"));
   EXPECT_FALSE(estimates[5].ok());

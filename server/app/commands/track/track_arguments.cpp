@@ -186,7 +186,9 @@ Result<server::EstimatorSpec> estimator_from(const TrackArguments& arguments) {
   for (const std::string& text : arguments.sets) {
     const Result<server::Override> change = server::parse_override(text);
     if (!change) return change.error().in("--set");
-    if (Status status = server::apply_override(*change, *entry); !status) return status.error();
+    if (Status status = server::apply_override(*change, *entry); !status) {
+      return status.error().in("--set");
+    }
   }
   return server::estimator_from_json(std::move(*entry), fs::current_path());
 }

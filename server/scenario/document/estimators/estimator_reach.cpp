@@ -39,7 +39,7 @@ const std::string* untrusted_parameter(const EstimatorSpec& spec, const Trusted&
 }
 
 Error out_of_reach(std::size_t estimator, const std::string& field) {
-  return {ErrorCode::kInvalidArgument,
+  return {ErrorCode::kForbidden,
           "estimators." + std::to_string(estimator) + "." + field +
               ": must be as in the scenario's file; clients may set it only if the server was "
               "started with --allow-commands"};
@@ -69,7 +69,7 @@ Status check_reach(const Scenario& scenario, const Trusted& trusted) {
       return live_of(each) == wanted;
     });
     if (!wanted.is_null() && !known) {
-      return Error{ErrorCode::kInvalidArgument,
+      return Error{ErrorCode::kForbidden,
                    std::string("flight.") + kind +
                        ": must be as in the scenario's file; clients may set it only if the server "
                        "was started with --allow-commands"};

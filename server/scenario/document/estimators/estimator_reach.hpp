@@ -11,7 +11,7 @@ namespace overfly::server {
 /// Rejects settings that only the machine's own scenarios may contain: an estimator whose command,
 /// addresses or parameters that may name files (text with a slash) differ from those of every
 /// estimator of the `trusted` scenarios, and a live flight that differs from that of each of them.
-/// Errors: kInvalidArgument naming the field.
+/// Errors: kForbidden naming the field.
 [[nodiscard]] Status check_reach(const Scenario& scenario, const std::vector<Scenario>& trusted);
 
 /// Rejects a live flight on a link that is not one of `allowed`.

@@ -79,6 +79,19 @@ class UploadSetTest : public ::testing::Test {
   TestServer server_{limits()};
 };
 
+/// Also one that has the name of the mapping.
+TEST_F(UploadSetTest, IsNotDeletedWithOneOfItsPieces) {
+  Files files = flight("flight.csv");
+  for (auto& [name, text] : files) {
+    if (name == "gps.csv") name = "flight.csv";
+  }
+  ASSERT_EQ(send(files).status, 201);
+  const Answer refused =
+      ask(server_.port(), "DELETE", "/api/v1/trajectories/file:uploads%2Fflight%2Fflight.csv");
+  EXPECT_NE(refused.status, 204);
+  EXPECT_EQ(get("").json().at("logs").size(), 1U);
+}
+
 TEST_F(UploadSetTest, IsOneLog) {
   const Answer sent = send(flight());
   ASSERT_EQ(sent.status, 201) << sent.body;
