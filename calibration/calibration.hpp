@@ -32,8 +32,8 @@ struct CalibratedView {
   double tilt_rad = 0.0;  ///< between the optical axis and the board's normal
   double rms_px = 0.0;    ///< root mean square of the distances of its corners
   double max_px = 0.0;
-  /// Its RMS is more than three times the median of all views: the board was bent or moved, or its
-  /// corners are wrong. It has no part in the estimate.
+  /// Its RMS is more than three times the median of all views, and more than 0.1 px: the board was
+  /// bent or moved, or its corners are wrong. It has no part in the estimate.
   bool outlier = false;
 };
 

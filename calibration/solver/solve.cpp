@@ -260,7 +260,6 @@ Result<Solution> solve(const Board& board,
   solution.rms_px = std::sqrt(minimum.cost / corners);
   solution.sigma_px = std::sqrt(minimum.cost / (2.0 * corners - unknowns));
   solution.unit_covariance = *unit_covariance;
-  solution.iterations = minimum.iterations;
   return solution;
 }
 

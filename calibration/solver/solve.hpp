@@ -28,7 +28,6 @@ struct Solution {
   double sigma_px = 0.0;
   /// Covariance of the parameters (lens_parameters.hpp) for a noise of 1 px; scale by sigma_px^2.
   Eigen::MatrixXd unit_covariance;
-  int iterations = 0;
 };
 
 /// Minimises the sum of the squared distances between corners and their projections.

@@ -20,6 +20,10 @@ struct HomographyParameters {
   double reference_px = 60.0;  ///< median motion after which a new reference image is taken, > 0
 };
 
+/// Upper bound of the memory of its own images [bytes per pixel of the camera], measured: the
+/// search for corners takes 24, beside the previous image.
+inline constexpr double kHomographyBytesPerPx = 25.0;
+
 /// Errors: kInvalidArgument naming an unknown key, or field, value and limit.
 [[nodiscard]] Result<HomographyParameters> homography_parameters_from(
     const std::map<std::string, double>& values);

@@ -16,7 +16,9 @@ constexpr double kGasConstant = 287.05287;  // J/(kg K), dry air (ISO 2533)
 constexpr double kGravity = 9.80665;        // m/s^2
 constexpr double kTiltGain_1_s = 0.2;       // of the accelerometers
 constexpr double kHeadingGain_1_s = 0.5;    // of the compass
-constexpr double kLongestStep_s = 1.0;      // a longer gap in the samples is not integrated
+/// Angular rates are not integrated over a longer gap in the samples, and after one the compass
+/// corrects as after so long. Between frames that are farther apart the way is made in such steps.
+constexpr double kLongestStep_s = 1.0;
 
 /// Attitude and heading from gyroscopes, accelerometers and compass. The frame "level" is
 /// north-west-up of the first compass reading: its x axis points to where the nose did.
@@ -30,7 +32,8 @@ class Attitude {
 
   void add(const ImuSample& sample, double airspeed_m_s) {
     const Eigen::Vector3d omega = sample.angular_rate_rad_s;
-    const double dt_s = step_s(imu_ns_, sample.t_ns);
+    const double since_s = step_s(imu_ns_, sample.t_ns);
+    const double dt_s = since_s <= kLongestStep_s ? since_s : 0.0;
     if (!omega.allFinite() || !sample.acceleration_m_s2.allFinite()) return;
     has_rates_ = true;
     const Eigen::Vector3d centripetal = omega.cross(Eigen::Vector3d(airspeed_m_s, 0.0, 0.0));
@@ -45,7 +48,7 @@ class Attitude {
 
   void add(const MagnetometerSample& sample) {
     if (!sample.field_ut.allFinite()) return;
-    const double dt_s = step_s(compass_ns_, sample.t_ns);
+    const double dt_s = std::min(step_s(compass_ns_, sample.t_ns), kLongestStep_s);
     const Eigen::Vector3d field = R_level_body_ * sample.field_ut;
     if (!(field.head<2>().norm() > 0.0)) return;
     const double direction_rad = std::atan2(field.y(), field.x());
@@ -60,11 +63,11 @@ class Attitude {
   }
 
  private:
-  /// Seconds since the last sample of a kind; 0 for the first one and after a gap.
+  /// Seconds since the last sample of a kind; 0 for the first one.
   static double step_s(std::optional<std::int64_t>& last_ns, std::int64_t t_ns) {
     const double dt_s = last_ns ? s_from_ns(t_ns - *last_ns) : 0.0;
     last_ns = t_ns;
-    return dt_s > 0.0 && dt_s <= kLongestStep_s ? dt_s : 0.0;
+    return std::max(0.0, dt_s);
   }
 
   /// body is forward-right-down: level flight.
@@ -102,8 +105,14 @@ class DeadReckoning final : public BaselinePort {
   void take(const SensorSamples& samples) {
     for (const BarometerSample& sample : samples.barometer) take(sample);
     for (const AirspeedSample& sample : samples.airspeed) take(sample);
-    for (const ImuSample& sample : samples.imu) attitude_.add(sample, airspeed_m_s_.value_or(0.0));
-    for (const MagnetometerSample& sample : samples.magnetometer) attitude_.add(sample);
+    for (const ImuSample& sample : samples.imu) {
+      attitude_.add(sample, airspeed_m_s_.value_or(0.0));
+      move_between_frames(sample.t_ns);
+    }
+    for (const MagnetometerSample& sample : samples.magnetometer) {
+      attitude_.add(sample);
+      move_between_frames(sample.t_ns);
+    }
   }
 
   void take(const BarometerSample& sample) {
@@ -123,11 +132,17 @@ class DeadReckoning final : public BaselinePort {
     airspeed_m_s_ = airspeed_m_s_ ? 0.9 * *airspeed_m_s_ + 0.1 * true_m_s : true_m_s;
   }
 
+  /// Follows the turns between frames that are far apart.
+  void move_between_frames(std::int64_t t_ns) {
+    if (moved_ns_ && s_from_ns(t_ns - *moved_ns_) > kLongestStep_s) move_to(t_ns);
+  }
+
+  /// With the last known airspeed.
   void move_to(std::int64_t t_ns) {
     const double dt_s = moved_ns_ ? s_from_ns(t_ns - *moved_ns_) : 0.0;
     moved_ns_ = t_ns;
     const Eigen::Vector2d nose = (attitude_.R_level_body() * Eigen::Vector3d::UnitX()).head<2>();
-    if (nose.norm() > 1e-6 && dt_s <= kLongestStep_s) {
+    if (nose.norm() > 1e-6) {
       p_level_m_.head<2>() += *airspeed_m_s_ * dt_s * nose.normalized();
     }
     p_level_m_.z() = height_m_;

@@ -1,6 +1,7 @@
 #include "odometry/feature/estimator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/measure/processor_time.hpp"
@@ -223,6 +224,26 @@ void FeatureOdometry::accept(const FrameImage& frame, VoEstimate& estimate, Outc
   keeper.take_timing(estimate.timing_ms);
   motion_.observe(frame.t_ns, T_camera_vo_);
   state_ = TrackingState::kTracking;
+}
+
+double most_bytes_per_px(const FeatureParameters& parameters) {
+  constexpr double kPyramid = 4.0 / 3.0 + 1.0 / (kBurntCellPx * kBurntCellPx);
+  constexpr double kRectifier = 9.0;
+  // The present and the previous image, one that is being mapped, and one about to be dropped.
+  constexpr int kPassing = 4;
+  const MapperOptions mapper;
+  const InitialiserOptions tracks;
+  const DescriptorInitialiserOptions descriptors;
+  // Next to the old map there is a new one, or what it is to be made of.
+  const int first_images =
+      2 + tracks.max_snapshots + descriptors.references * (1 + descriptors.views);
+  const int images = mapper.images_kept + std::max(mapper.images_kept, first_images) + kPassing;
+  double levels = 0.0;
+  for (int level = 0; level < parameters.levels; ++level) {
+    levels += std::pow(parameters.scale_factor, -2.0 * level);
+  }
+  // Of the corners' levels each of the two extractors has an image, a smoothed one and a mask.
+  return images * kPyramid + 2.0 * 3.0 * levels + kRectifier;
 }
 
 Result<std::unique_ptr<VoPort>> create_feature_odometry(const FeatureParameters& parameters) {

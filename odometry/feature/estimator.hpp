@@ -36,7 +36,7 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame) override;
   [[nodiscard]] std::vector<std::string> take_log() override { return log_.take(); }
   void set_debug(bool wanted) override { debug_ = wanted; }
-  /// CPU time of both threads, and the largest memory of the map: images, points, observations.
+  /// CPU time of both threads, and the largest memory of the maps: images, points, observations.
   /// With two threads it includes the tracking thread's partial copy.
   [[nodiscard]] std::optional<ResourceUse> resource_use() const override;
 
@@ -54,7 +54,7 @@ class FeatureOdometry final : public VoPort {
   struct OldMap {
     Map map;
     int map_id = 0;
-    double m_per_unit = 1.0;
+    std::optional<double> m_per_unit;
   };
   /// Results of processing the current frame.
   struct Outcome {
@@ -79,6 +79,8 @@ class FeatureOdometry final : public VoPort {
   [[nodiscard]] double height_above_ground() const;
   [[nodiscard]] const Map& map() const { return parts_->keeper.view(); }
   void find_scale();
+  /// Scale of reported poses.
+  [[nodiscard]] double scale() const { return m_per_unit_.value_or(1.0); }
   void report(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate);
   void report_pose(const Outcome& outcome, VoEstimate& estimate) const;
   void draw(const FrameImage& frame, const Outcome& outcome, VoEstimate& estimate) const;
@@ -96,9 +98,9 @@ class FeatureOdometry final : public VoPort {
   std::optional<OldMap> old_map_;
   std::int64_t looked_for_old_map_at_ns_ = 0;
   Pose T_camera_vo_;
-  double known_height_m_ = 0.0;  ///< above ground, scales the next map; 0 = unknown
-  double m_per_unit_ = 1.0;      ///< scale of reported poses; 1 if the height is unknown
-  double map_memory_mb_ = 0.0;   ///< at the last keyframe
+  double known_height_m_ = 0.0;       ///< above ground, scales the next map; 0 = unknown
+  std::optional<double> m_per_unit_;  ///< of the present map; empty: its units are not metres
+  double map_memory_mb_ = 0.0;        ///< at the last keyframe
   std::optional<VoFrame> previous_;
   std::int64_t lost_at_ns_ = 0;
   double blind_search_s_ = 0.0;  ///< time lost while images show texture

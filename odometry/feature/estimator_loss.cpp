@@ -10,6 +10,8 @@ namespace overfly::odometry::feature {
 namespace {
 
 constexpr double kGiveUpS = 3.0;
+/// An image counts for at most this time of the search: it says nothing about a gap before it.
+constexpr double kSearchedByOneImageS = 1.0;
 /// A map with fewer keyframes is not kept for relocalisation.
 constexpr int kYoungMap = 6;
 /// Time after a loss during which the predicted pose is still tried.
@@ -32,7 +34,7 @@ void FeatureOdometry::start_over() {
   parts_->initialiser.reset();
   parts_->descriptor_initialiser.reset();
   state_ = TrackingState::kInitialising;
-  m_per_unit_ = 1.0;
+  m_per_unit_.reset();
   map_id_ = ++last_map_id_;
 }
 
@@ -41,7 +43,8 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
   const double lost_s = static_cast<double>(frame.t_ns - lost_at_ns_) * 1e-9;
   if (lost_s < kExtrapolateS) outcome.tracked = track_map(frame);
   if (!outcome.tracked.tracked && shows_something(frame.pyramid)) {
-    blind_search_s_ += static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9;
+    blind_search_s_ +=
+        std::min(static_cast<double>(frame.t_ns - previous_->t_ns) * 1e-9, kSearchedByOneImageS);
     RelocaliserOptions options;
     options.seed = parameters_.seed + static_cast<std::uint64_t>(frame.index);
     const Relocalisation found = relocalise(camera_, options, frame.pyramid.level(0), orb_, map());
@@ -59,11 +62,12 @@ void FeatureOdometry::search(const FrameImage& frame, VoEstimate& estimate, Outc
 }
 
 /// Stores the current map as the old map. Of two, the one with more keyframes is kept; a young map
-/// never.
+/// never. The height at which it was lost is known if its units are metres.
 void FeatureOdometry::keep_old_map() {
   const int keyframes = map().keyframes().empty() ? 0 : map().newest().id + 1;
-  const bool scaled = known_height_m_ > 0.0 && keyframes >= kYoungMap;
-  if (scaled && map().newest().plane.holds) known_height_m_ = height_above_ground() * m_per_unit_;
+  if (m_per_unit_ && keyframes >= kYoungMap && map().newest().plane.holds) {
+    known_height_m_ = height_above_ground() * *m_per_unit_;
+  }
   const int kept = old_map_ ? old_map_->map.newest().id + 1 : kYoungMap - 1;
   Map present = parts_->keeper.release();
   if (keyframes > kept) old_map_ = OldMap{std::move(present), map_id_, m_per_unit_};
@@ -106,7 +110,7 @@ double FeatureOdometry::height_above_ground() const {
 }
 
 /// Scales the units to metres by the known height above the ground plane: for the first map the
-/// given height, later the height at which the previous map was lost.
+/// given height, later the height at which the last map in metres was lost.
 void FeatureOdometry::find_scale() {
   if (known_height_m_ <= 0.0) return;
   const Keyframe& first = map().keyframes().begin()->second;
@@ -119,7 +123,7 @@ void FeatureOdometry::find_scale() {
   m_per_unit_ = known_height_m_ / (1.0 / first.plane.coefficients.norm());
   if (map_id_ == 0) return;
   std::ostringstream line;
-  line << "map " << map_id_ << " is scaled by the height at which the previous map was lost, "
+  line << "map " << map_id_ << " is scaled by the last known height above ground, "
        << known_height_m_ << " m";
   log_.add(line.str());
 }

@@ -14,7 +14,7 @@ void FeatureOdometry::report(const FrameImage& frame,
   const Map& map = this->map();
   if (outcome.keyframe) {
     const std::size_t old_bytes = old_map_ ? old_map_->map.memory_bytes() : 0;
-    map_memory_mb_ = static_cast<double>(map.memory_bytes() + old_bytes) / (1024.0 * 1024.0);
+    map_memory_mb_ = 1e-6 * static_cast<double>(parts_->keeper.memory_bytes() + old_bytes);
   }
   estimate.counters["searched"] = outcome.tracked.searched;
   estimate.counters["inliers"] = static_cast<double>(outcome.tracked.points.size());
@@ -33,12 +33,12 @@ void FeatureOdometry::report_pose(const Outcome& outcome, VoEstimate& estimate) 
     if (point != nullptr) points.push_back(point->position_vo);
   }
   estimate.sample.T_vo_camera = T_camera_vo_.inverse();
-  estimate.sample.T_vo_camera.translation *= m_per_unit_;
+  estimate.sample.T_vo_camera.translation *= scale();
   estimate.sample.scene_depth = axis_depth(T_camera_vo_, points);
-  if (estimate.sample.scene_depth) *estimate.sample.scene_depth *= m_per_unit_;
+  if (estimate.sample.scene_depth) *estimate.sample.scene_depth *= scale();
   if (!debug_) return;
   for (const Eigen::Vector3d& p : points) {
-    estimate.map_points_vo.push_back((m_per_unit_ * p).cast<float>());
+    estimate.map_points_vo.push_back((scale() * p).cast<float>());
   }
 }
 

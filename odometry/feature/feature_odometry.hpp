@@ -42,6 +42,11 @@ struct FeatureParameters {
 /// The parameters as text for display. Switches are "true" and "false".
 [[nodiscard]] std::map<std::string, std::string> texts_of(const FeatureParameters& parameters);
 
+/// Upper bound of the memory of an estimator's own images [bytes per pixel of the camera]: the
+/// keyframes of its maps, the images that wait for the first map, and the corners' levels. Points
+/// and observations are not included.
+[[nodiscard]] double most_bytes_per_px(const FeatureParameters& parameters);
+
 [[nodiscard]] Result<std::unique_ptr<VoPort>> create_feature_odometry(
     const FeatureParameters& parameters);
 

@@ -44,8 +44,8 @@ Port create_feature(const EstimatorSpec& spec, const EstimatorSetting& setting) 
   return odometry::feature::create_feature_odometry(*parameters);
 }
 
-Result<ToyParameters> toy_parameters_from(const VoParameters& given) {
-  const auto values = numbers_of(given);
+Result<ToyParameters> toy_parameters_of(const EstimatorSpec& spec) {
+  const auto values = numbers_of(spec.parameters);
   if (!values) return values.error();
   ToyParameters parameters;
   for (const auto& [key, value] : *values) {
@@ -60,6 +60,8 @@ Result<ToyParameters> toy_parameters_from(const VoParameters& given) {
                    "parameters." + key + ": must be drift, scale or scene_depth_m"};
     }
   }
+  if (spec.type == "perfect") parameters.drift = 0.0;  // whatever is given
+  if (Status status = check_toy_parameters(parameters); !status) return status.error();
   return parameters;
 }
 
@@ -68,7 +70,7 @@ Port create_toy(const EstimatorSpec& spec, const ToyTruthAt& truth) {
     return Error{ErrorCode::kInvalidArgument,
                  spec.type + ": needs the truth, which is not available"};
   }
-  const Result<ToyParameters> parameters = toy_parameters_from(spec.parameters);
+  const Result<ToyParameters> parameters = toy_parameters_of(spec);
   if (!parameters) return parameters.error();
   return spec.type == "perfect" ? create_perfect_estimator(truth, *parameters)
                                 : create_drifting_estimator(truth, *parameters);
@@ -105,7 +107,7 @@ Status check_parameters(const EstimatorSpec& spec) {
   if (spec.type == "feature") return status_of(feature_parameters_of(spec, {}));
   if (spec.type == "baseline_homography") return status_of(homography_parameters_of(spec));
   if (is_baseline_estimator(spec.type)) return check_no_parameters(spec);
-  if (is_test_estimator(spec.type)) return status_of(toy_parameters_from(spec.parameters));
+  if (is_test_estimator(spec.type)) return status_of(toy_parameters_of(spec));
   return {};
 }
 
@@ -140,6 +142,14 @@ Status check_native_parameters(const std::vector<EstimatorSpec>& specs) {
   }
   if (messages.empty()) return {};
   return Error{ErrorCode::kInvalidArgument, messages};
+}
+
+double own_bytes_per_px(const EstimatorSpec& spec) {
+  if (spec.type == "baseline_homography") return odometry::baseline::kHomographyBytesPerPx;
+  if (spec.type != "feature") return 0.0;
+  // One with parameters that are not valid does not fly.
+  const auto parameters = feature_parameters_of(spec, {});
+  return parameters ? odometry::feature::most_bytes_per_px(*parameters) : 0.0;
 }
 
 }  // namespace overfly::server

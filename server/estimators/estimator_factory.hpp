@@ -25,4 +25,8 @@ namespace overfly::server {
 /// LIMIT".
 [[nodiscard]] Status check_native_parameters(const std::vector<EstimatorSpec>& specs);
 
+/// Upper bound of the memory of the images that a native estimator keeps for itself [bytes per
+/// pixel of its camera]; 0 for others.
+[[nodiscard]] double own_bytes_per_px(const EstimatorSpec& spec);
+
 }  // namespace overfly::server

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "server/estimators/estimator_factory.hpp"
 #include "server/run/frames_ahead.hpp"
 
 namespace overfly::server {
@@ -84,12 +85,25 @@ std::uint64_t target_bytes(const CameraSpec& camera) {
   return sizes_of(camera).pixels * (colour + back + 4);
 }
 
-/// Copies of the grey image: one waiting and one in progress, and the estimator's own data (here a
-/// pyramid and its debug image; an outside process has its own memory).
+/// What OpenGL needs to compose an image of several samples or through a lens: the sum of the
+/// samples and, for a lens, the ray of each sample.
+std::uint64_t composing_bytes(const CameraSpec& camera) {
+  const bool has_lens = !camera.model.distortion().none();
+  const bool many_samples = camera.quality != renderer::RenderQuality::kTrilinear;
+  if (!has_lens && !many_samples) return 0;
+  constexpr std::uint64_t kMostSamples = 4;  // of RenderQuality::kReference
+  const CameraSizes sizes = sizes_of(camera);
+  const std::uint64_t rays = (many_samples ? kMostSamples : 1) * sizes.pixels;
+  return sizeof(float) * sizes.image + (has_lens ? 2 * sizeof(float) * rays : 0);
+}
+
+/// Copies of the grey image: one waiting and one in progress, a pyramid and the debug image; and
+/// what a native estimator keeps for itself (an outside process has its own memory).
 std::uint64_t estimator_bytes(const Scenario& scenario, const EstimatorSpec& estimator) {
-  constexpr std::uint64_t kCopies = 8;
+  constexpr double kCopies = 8.0;
   const CameraSpec& camera = scenario.cameras[estimator.camera];
-  return kCopies * sizes_of(camera).pixels;
+  const auto pixels = static_cast<double>(sizes_of(camera).pixels);
+  return static_cast<std::uint64_t>((kCopies + own_bytes_per_px(estimator)) * pixels);
 }
 
 std::string bytes_text(std::uint64_t bytes) {
@@ -147,7 +161,8 @@ RunMemory memory_of(const Scenario& scenario) {
   std::set<std::tuple<int, int, bool, bool>> targets;
   for (const CameraSpec& camera : scenario.cameras) {
     memory.images_bytes += held_bytes(scenario, camera);
-    most_passing = std::max(most_passing, passing_bytes(scenario, camera));
+    most_passing = std::max(
+        most_passing, passing_bytes(scenario, camera) + (raycast ? 0 : composing_bytes(camera)));
     const PinholeCamera& pinhole = camera.model.pinhole();
     const bool new_target =
         targets.emplace(pinhole.width_px, pinhole.height_px, camera.rgb, camera.sensor.enabled)

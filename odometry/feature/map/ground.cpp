@@ -33,8 +33,8 @@ struct DepthSample {
 
 /// Fits a plane (as in GroundPlane) to samples by iteratively reweighted least squares with Cauchy
 /// weights on the relative depth error.
-Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples, const Eigen::Vector3d& start) {
-  Eigen::Vector3d plane = start;
+Eigen::Vector3d plane_of(const std::vector<DepthSample>& samples) {
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
   for (int iteration = 0; iteration < 6; ++iteration) {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -79,7 +79,7 @@ void fit_plane(const PinholeCamera& camera, const Map& map, Keyframe& keyframe) 
     if (depth > 1e-6) samples.push_back({camera.ray(seen.pixel), 1.0 / depth});
   }
   if (samples.size() < kMinPlanePoints) return;
-  const Eigen::Vector3d plane = plane_of(samples, keyframe.plane.coefficients);
+  const Eigen::Vector3d plane = plane_of(samples);
   if (plane.allFinite() && plane.z() > 0.0) keyframe.plane.coefficients = plane;
   const double asked = keyframe.plane.holds ? kLeastShareNear : kShareNearAgain;
   keyframe.plane.holds = share_near(samples, keyframe.plane.coefficients) > asked;
@@ -101,7 +101,7 @@ std::optional<double> axis_depth(const Pose& T_camera_vo,
   }
   if (all.empty()) return std::nullopt;
   if (near_axis.size() >= kMinAxisPoints) {
-    const Eigen::Vector3d plane = plane_of(near_axis, Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d plane = plane_of(near_axis);
     if (plane.allFinite() && plane.z() > 0.0) return 1.0 / plane.z();
   }
   return median_of(all);

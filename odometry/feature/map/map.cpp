@@ -67,8 +67,6 @@ void Map::forget_images(int keep_newest) {
   first_with_image_ = first_kept;
 }
 
-void Map::clear() { *this = Map(); }
-
 Map Map::newest_part(int keyframes) const {
   Map part;
   part.next_keyframe_ = next_keyframe_;
@@ -93,14 +91,21 @@ Map Map::newest_part(int keyframes) const {
 }
 
 std::size_t Map::memory_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = image_bytes();
   for (const auto& [id, keyframe] : keyframes_) {
-    for (const cv::Mat& level : keyframe.pyramid.levels) bytes += level.total();
     bytes += sizeof(Keyframe) + keyframe.observations.capacity() * sizeof(Observation) +
              keyframe.candidates.capacity() * sizeof(Candidate);
   }
   for (const MapPoint& point : points_) {
     bytes += sizeof(MapPoint) + point.keyframes.capacity() * sizeof(int);
+  }
+  return bytes;
+}
+
+std::size_t Map::image_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [id, keyframe] : keyframes_) {
+    for (const cv::Mat& level : keyframe.pyramid.levels) bytes += level.total();
   }
   return bytes;
 }

@@ -84,12 +84,14 @@ class Map {
   /// Removes the images of all but the newest keyframes, the points whose patch is in them, and
   /// keyframes without points.
   void forget_images(int keep_newest);
-  void clear();
   /// Copies the part that tracking needs: the newest `keyframes` keyframes and the points whose
-  /// patch is in them. Only the newest keyframe has observations, and none has candidates.
+  /// patch is in them. Only the newest keyframe has observations, and none has candidates. Images
+  /// are shared with this map.
   [[nodiscard]] Map newest_part(int keyframes) const;
   /// Memory of images, points, observations and candidates [bytes].
   [[nodiscard]] std::size_t memory_bytes() const;
+  /// Of these, those of images.
+  [[nodiscard]] std::size_t image_bytes() const;
 
   [[nodiscard]] std::map<int, Keyframe>& keyframes() { return keyframes_; }
   [[nodiscard]] const std::map<int, Keyframe>& keyframes() const { return keyframes_; }

@@ -48,6 +48,7 @@ Map MapKeeper::release() {
     wait_until_idle();
     const std::lock_guard lock(mutex_);
     published_.reset();
+    published_bytes_ = 0;
     failure_ = nullptr;
   }
   view_.reset();
@@ -118,6 +119,12 @@ double MapKeeper::take_cpu_s() {
   return std::exchange(cpu_s_, 0.0);
 }
 
+std::size_t MapKeeper::memory_bytes() const {
+  if (!threaded_) return map_.memory_bytes();
+  const std::lock_guard lock(mutex_);
+  return published_bytes_;
+}
+
 std::vector<std::string> MapKeeper::take_warnings() {
   const std::lock_guard lock(mutex_);
   return std::exchange(warnings_, {});
@@ -179,8 +186,10 @@ void MapKeeper::count(const std::unordered_map<int, Sights>& sights) {
 
 void MapKeeper::publish() {
   auto copy = std::make_shared<const Map>(map_.newest_part(images_kept_));
+  const std::size_t bytes = map_.memory_bytes() + copy->memory_bytes() - copy->image_bytes();
   const std::lock_guard lock(mutex_);
   published_ = std::move(copy);
+  published_bytes_ = bytes;
 }
 
 }  // namespace overfly::odometry::feature

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <exception>
 #include <map>
 #include <memory>
@@ -65,6 +66,9 @@ class MapKeeper {
   void take_timing(std::map<std::string, double>& timing_ms);
   /// Processor time of the mapping thread since the last call [s]; 0 with one thread.
   [[nodiscard]] double take_cpu_s();
+  /// Of the map, and with two threads of the published copy, whose images are the map's [bytes]:
+  /// with two threads when it was published last.
+  [[nodiscard]] std::size_t memory_bytes() const;
   /// Warnings about the calibration since the last call, for the user.
   [[nodiscard]] std::vector<std::string> take_warnings();
   /// Blocks until no keyframe is waiting or being mapped.
@@ -103,6 +107,7 @@ class MapKeeper {
   bool busy_ = false;
   bool stop_ = false;
   std::shared_ptr<const Map> published_;
+  std::size_t published_bytes_ = 0;  ///< memory_bytes() with two threads
   std::map<std::string, double> timing_ms_;
   double cpu_s_ = 0.0;
   std::vector<std::string> warnings_;

@@ -21,8 +21,6 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostListedFolders = 500;
 constexpr std::size_t kMostListedRecordings = 500;
-/// A session that nobody has looked at for so long gives way to a new one.
-constexpr std::chrono::minutes kAbandoned{2};
 
 bool ends_with_any(const std::string& name, std::initializer_list<std::string_view> endings) {
   const std::string lower = lower_case(name);
@@ -184,17 +182,22 @@ void CalibrationDesk::bury() {
   std::erase_if(ending_, [](const auto& session) { return session->over(); });
 }
 
-/// Ends the session that was left alone for longest if there are too many. @pre the lock is held
+/// Ends the session that was left alone for longest if there are too many: the new one does not
+/// wait for its end. @pre the lock is held
 bool CalibrationDesk::make_room() {
   bury();
-  if (entries_.size() + ending_.size() < kMostSessions) return true;
+  const std::size_t count = entries_.size() + ending_.size();
+  if (count < kMostSessions) return true;
+  if (count > kMostSessions) return false;
   const auto oldest =
       std::max_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
         return a.session->untouched_for() < b.session->untouched_for();
       });
-  if (oldest == entries_.end() || oldest->session->untouched_for() < kAbandoned) return false;
+  if (oldest == entries_.end() || oldest->session->untouched_for() < options_.patience) {
+    return false;
+  }
   close(oldest);
-  return entries_.size() + ending_.size() < kMostSessions;
+  return true;
 }
 
 /// @pre the lock is held

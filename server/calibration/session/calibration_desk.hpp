@@ -1,6 +1,7 @@
 // The calibrations of a server: sources of images, sessions in progress, and what was saved.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -44,6 +45,8 @@ struct DeskOptions {
   std::vector<LiveAddress> cameras;  ///< that the operator allowed
   std::filesystem::path store;       ///< empty: nothing is saved
   std::function<void()> begin_thread;
+  /// A session that nobody has looked at for so long gives way to a new one.
+  std::chrono::milliseconds patience{120'000};
 };
 
 /// Thread-safe.
@@ -58,7 +61,7 @@ class CalibrationDesk {
 
   /// @return the id of the session
   /// Errors: kNotFound for a source; kInvalidArgument for a board that is not suitable; kConflict
-  /// with kMostSessions of which none was left alone.
+  /// with kMostSessions of which none was left alone, or while one that gave way has yet to end.
   [[nodiscard]] Result<std::string> begin(const DeskRequest& request);
   /// Marks it as being looked at. Errors: kNotFound.
   [[nodiscard]] Result<std::shared_ptr<CalibrationSession>> session(const std::string& id);
@@ -86,7 +89,8 @@ class CalibrationDesk {
   const CalibrationStore store_;
   std::mutex mutex_;
   std::vector<Entry> entries_;
-  /// Ended, but the image or estimate in progress takes time; they count as long.
+  /// Ended, but the image or estimate in progress takes time; they count as long. One that gave way
+  /// may be there in addition to kMostSessions.
   std::vector<std::shared_ptr<CalibrationSession>> ending_;
 };
 

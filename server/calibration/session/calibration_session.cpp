@@ -223,7 +223,7 @@ void CalibrationSession::take_next() {
     cleared = std::exchange(clear_, false);
   }
   if (cleared) start_again();
-  const bool left = !images_->total() && nobody_looks();
+  const bool left = !uploads_ && !images_->total() && nobody_looks();
   if (finished || left || images_->ended()) {
     end_source("");
     return;
@@ -240,6 +240,7 @@ void CalibrationSession::start_again() {
   auto fresh = Calibrator::create(session_options(options_, images_ && images_->moving()));
   if (fresh) calibrator_ = std::move(*fresh);
   change([&](SessionState& state) {
+    solve_.reset();
     state.views.clear();
     state.left_out.clear();
     state.left_out_images.clear();
@@ -302,14 +303,18 @@ void CalibrationSession::show(const BoardImage& image, const std::string& reason
 }
 
 void CalibrationSession::end_source(const std::string& error) {
-  const bool enough = calibrator_.views().size() >= calibration::kLeastViews;
+  if (uploads_) uploads_->finish();
   images_.reset();
   change([&](SessionState& state) {
     state.source_open = false;
     state.error = error;
     state.phase = error.empty() ? SessionPhase::kWaiting : SessionPhase::kFailed;
     // What came before a camera failed may be enough.
-    if (enough && !solve_ && !state.solution) solve_ = SolveRequest{state.lens, {}};
+    const std::size_t views = state.views.size() - state.left_out.size();
+    const bool more = !state.solution || state.solution->view_of.size() < views;
+    if (views >= calibration::kLeastViews && more && !solve_) {
+      solve_ = SolveRequest{state.lens, state.left_out};
+    }
   });
 }
 

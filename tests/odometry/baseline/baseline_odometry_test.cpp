@@ -191,6 +191,50 @@ TEST(BaselineDeadReckoning, FollowsACoordinatedTurnWithIdealSensors) {
   EXPECT_NEAR(std::atan2(nose.y(), nose.x()), wrap_pi(-angle), 0.03);
 }
 
+TEST(BaselineDeadReckoning, FollowsTurnsBetweenFramesThatAreFarApart) {
+  const auto port = create_dead_reckoning({R_body_camera_nadir(), Eigen::Vector3d::Zero()});
+  constexpr double kStep_s = 2.0;
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t k = 0; k <= 6; ++k) {
+    VoFrame frame = testing::test_frame(k, small_camera(), blank());
+    const double t_s = kStep_s * static_cast<double>(k);
+    frame.t_ns = ns_from_s(t_s);
+    if (k > 0) frame.sensors = SensedTurn::between(t_s - kStep_s, t_s);
+    const VoEstimate estimate = tracked(*port, frame);
+    if (k == 0) continue;  // without samples
+    ASSERT_EQ(estimate.sample.state, TrackingState::kTracking);
+    places.push_back(estimate.sample.T_vo_camera.translation);
+  }
+  // From the beginning of the turn, at 2 s, to 12 s.
+  const double radius = SensedTurn::kSpeed / SensedTurn::kTurnRate;
+  const double angle = SensedTurn::turned_rad(12.0);
+  const Eigen::Vector3d expected(radius * std::sin(angle), -radius * (1.0 - std::cos(angle)), 0.0);
+  // Steps of a second with the heading at their end: half a step's turn in direction.
+  const double tolerance = 0.5 * SensedTurn::kTurnRate * expected.norm() + 5.0;
+  EXPECT_LT((places.back() - places.front() - expected).norm(), tolerance);
+}
+
+/// Gyroscopes that say nothing, and a compass every two seconds.
+TEST(BaselineDeadReckoning, TakesTheHeadingOfASlowCompass) {
+  const auto port = create_dead_reckoning({R_body_camera_nadir(), Eigen::Vector3d::Zero()});
+  constexpr double kYaw = 0.5;
+  Pose last;
+  for (std::size_t k = 0; k < 31 * 16; ++k) {
+    VoFrame frame = testing::test_frame(k, small_camera(), blank());
+    frame.sensors.imu.push_back({frame.t_ns, {0, 0, -9.80665}, {0, 0, 0}, 5'000'000});
+    frame.sensors.airspeed.push_back({frame.t_ns, 245.0, 20.0});
+    if (k % 62 == 0) {
+      const double yaw = k == 0 ? 0.0 : kYaw;
+      frame.sensors.magnetometer.push_back(
+          {frame.t_ns, {20.0 * std::cos(yaw), -20.0 * std::sin(yaw), 45.0}});
+    }
+    last = tracked(*port, frame).sample.T_vo_camera;
+  }
+  const Eigen::Vector3d nose =
+      last.rotation * R_body_camera_nadir().conjugate() * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR(std::atan2(nose.y(), nose.x()), -kYaw, 0.02);
+}
+
 TEST(BaselineDeadReckoning, SaysWhichSamplesAreMissing) {
   const auto port = create_dead_reckoning({});
   for (std::size_t k = 0; k < 110; ++k) {

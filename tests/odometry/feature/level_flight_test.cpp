@@ -192,6 +192,9 @@ TEST(FeatureOdometry, ReportsUnitDepthAndStages) {
   // Two and more images of 320 x 240 with their smaller levels.
   EXPECT_GT(last->counters.at("map_memory_mb"), 0.2);
   EXPECT_LT(last->counters.at("map_memory_mb"), 50.0);
+  // In 1e6 bytes: a whole number of bytes.
+  const double bytes = 1e6 * last->counters.at("map_memory_mb");
+  EXPECT_NEAR(bytes, std::round(bytes), 1e-3);
 }
 
 TEST(FeatureOdometry, AccountsForItsThreadsAndItsMap) {

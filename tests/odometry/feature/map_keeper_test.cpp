@@ -18,6 +18,9 @@ struct Followed {
   std::vector<Pose> poses;  ///< T_camera_vo as tracked
   int keyframes = 0;
   std::size_t points = 0;
+  std::size_t memory_bytes = 0;  ///< of the keeper
+  std::size_t view_bytes = 0;    ///< of the map that it shows
+  std::size_t image_bytes = 0;
 };
 
 /// Follows a level flight; with two threads it waits for each keyframe's mapping.
@@ -58,6 +61,9 @@ Followed follow(int threads) {
   const Map& map = keeper.refresh();
   followed.keyframes = map.newest().id + 1;
   followed.points = map.points().size();
+  followed.memory_bytes = keeper.memory_bytes();
+  followed.view_bytes = map.memory_bytes();
+  followed.image_bytes = map.image_bytes();
   return followed;
 }
 
@@ -73,6 +79,11 @@ TEST(MapKeeper, MapsTheSameBesideTrackingAsBeforeTheAnswer) {
     EXPECT_EQ(before.poses[i].translation, on_thread.poses[i].translation) << i;
     EXPECT_EQ(before.poses[i].rotation.coeffs(), on_thread.poses[i].rotation.coeffs()) << i;
   }
+  // The copy for tracking shares the images.
+  EXPECT_EQ(before.memory_bytes, before.view_bytes);
+  EXPECT_EQ(before.image_bytes, on_thread.image_bytes);
+  EXPECT_EQ(on_thread.memory_bytes,
+            before.memory_bytes + on_thread.view_bytes - on_thread.image_bytes);
 }
 
 /// Tracks nothing, but has a first map and a keyframe to process.

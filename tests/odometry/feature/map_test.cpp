@@ -54,6 +54,15 @@ TEST(Map, ForgetsOldImagesAndWhatHangsOnThem) {
   EXPECT_EQ(map.keyframes().begin()->first, 1);
 }
 
+TEST(Map, CountsTheMemoryOfItsImagesToo) {
+  Map map = small_map(30);
+  const std::size_t without = map.memory_bytes();
+  EXPECT_EQ(map.image_bytes(), 0U);
+  map.newest().pyramid = build_pyramid(std::make_shared<const Image>(64, 64, 1));
+  EXPECT_EQ(map.image_bytes(), 64U * 64U + 32U * 32U);
+  EXPECT_EQ(map.memory_bytes(), without + map.image_bytes());
+}
+
 TEST(GroundPlane, IsFittedDespiteOutliers) {
   Map map;
   Keyframe& keyframe = map.add_keyframe({});

@@ -64,5 +64,16 @@ TEST(FeatureParameters, AreReportedByTheirNames) {
   EXPECT_EQ(reported.size(), 12U);
 }
 
+TEST(FeatureParameters, DetermineTheMemoryOfTheImages) {
+  // Two maps with 50 images of 4/3 bytes per pixel are the least.
+  const double usual = most_bytes_per_px({});
+  EXPECT_GT(usual, 150.0);
+  EXPECT_LT(usual, 250.0);
+  FeatureParameters many;
+  many.levels = 16;
+  many.scale_factor = 1.001;
+  EXPECT_GT(most_bytes_per_px(many), usual + 60.0);
+}
+
 }  // namespace
 }  // namespace overfly::odometry::feature

@@ -183,6 +183,21 @@ TEST_F(CalibrationDeskTest, HasALimitedNumberOfSessions) {
   EXPECT_EQ(desk.sessions().size(), kMostSessions);
 }
 
+TEST_F(CalibrationDeskTest, ASessionThatWasLeftAloneGivesWay) {
+  DeskOptions impatient = options();
+  impatient.patience = 50ms;
+  CalibrationDesk desk(impatient);
+  const std::string first = desk.begin(request(SourceKind::kUpload, "")).value();
+  const std::string second = desk.begin(request(SourceKind::kUpload, "")).value();
+  std::this_thread::sleep_for(100ms);
+  ASSERT_TRUE(desk.session(second));  // somebody looks at it
+  const auto third = desk.begin(request(SourceKind::kUpload, ""));
+  ASSERT_TRUE(third) << third.error().message;
+  EXPECT_FALSE(desk.session(first));
+  EXPECT_TRUE(desk.session(second));
+  EXPECT_EQ(desk.sessions().size(), kMostSessions);
+}
+
 TEST_F(CalibrationDeskTest, KeepsCalibrationsByName) {
   CalibrationDesk desk(options());
   const CalibrationStore& store = desk.store();

@@ -229,6 +229,55 @@ TEST(CalibrationSession, TakesUploadsAsFastAsItSearchesThem) {
   EXPECT_EQ(session->upload("late.jpg", text).error().code, ErrorCode::kConflict);
 }
 
+/// Uploads as soon as there is room.
+void upload_all(CalibrationSession& session, const std::vector<Image>& images) {
+  for (const Image& image : images) {
+    const auto jpeg = encode_jpeg(image, 95).value();
+    while (!session.upload("photo.jpg", jpeg).value()) std::this_thread::sleep_for(5ms);
+  }
+}
+
+TEST(CalibrationSession, WaitsForUploadsHoweverLongTheyTake) {
+  SessionRequest request = request_for({});
+  request.patience = 1ms;
+  const auto session = CalibrationSession::begin(std::move(request)).value();
+  wait_for(*session, [](const SessionState& now) { return now.phase == SessionPhase::kTaking; });
+  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(session->state().source_open);
+  upload_all(*session, board_images(1));
+  wait_for(*session, [](const SessionState& now) { return now.views.size() == 1; });
+}
+
+TEST(CalibrationSession, TakesNoUploadsWithoutAThreadThatSearchesThem) {
+  SessionRequest request = request_for({});
+  request.begin_thread = [] { throw std::bad_alloc(); };
+  const auto session = CalibrationSession::begin(std::move(request)).value();
+  wait_for(*session, [](const SessionState& now) { return now.phase == SessionPhase::kFailed; });
+  const auto refused = session->upload("late.jpg", {'n', 'o'});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+}
+
+TEST(CalibrationSession, EstimatesAgainAtTheEndWithTheViewsThatCameSince) {
+  const auto session = CalibrationSession::begin(request_for({})).value();
+  const std::vector<Image> images = board_images(8);
+  upload_all(*session, {images.begin(), images.begin() + 5});
+  wait_for(*session, [](const SessionState& now) { return now.views.size() == 5; });
+  ASSERT_TRUE(session->solve({DistortionModel::kRadtan, false}, {1}));
+  SessionState state = wait_for(*session, [](const SessionState& now) {
+    return now.solution != nullptr && now.phase == SessionPhase::kTaking;
+  });
+  EXPECT_EQ(state.solution->view_of.size(), 4U);
+  upload_all(*session, {images.begin() + 5, images.end()});
+  session->finish();
+  state = wait_for(*session, [](const SessionState& now) {
+    return is_solved(now) && now.solution->number == 2;
+  });
+  // What the user left out stays so.
+  EXPECT_EQ(state.left_out, (std::set<std::size_t>{1}));
+  EXPECT_EQ(state.solution->view_of, (std::vector<std::size_t>{0, 2, 3, 4, 5, 6, 7}));
+}
+
 TEST(CalibrationSession, RefusesImagesThatAreTooLarge) {
   const auto session =
       CalibrationSession::begin(request_for(listed({Image(8000, 6000, 1, 90)}))).value();
