@@ -47,15 +47,15 @@ std::vector<std::optional<RelativeErrorAt>> relative_errors_along(
     if (!poses[at]) continue;
     const PosePair& now = *poses[at];
     const PosePair* const last = known.empty() ? nullptr : &*poses[known.back()];
-    const bool after_gap = !known.empty() && at - known.back() > kMaxGapPoses;
-    if (last == nullptr || last->map_id != now.map_id || after_gap) {
+    if (last == nullptr || last->map_id != now.map_id) {
       known = {at};
       path_m = {0.0};
       first = 0;
       continue;
     }
     known.push_back(at);
-    path_m.push_back(path_m.back() + (true_place(now) - true_place(*last)).norm());
+    const double step_m = (true_place(now) - true_place(*last)).norm() + now.detour_m;
+    path_m.push_back(path_m.back() + step_m);
     while (path_m.back() - path_m[first + 1] > kErrorWindow_m) ++first;
     const bool is_far = path_m.back() - path_m[first] > kErrorWindow_m;
     if (!is_far || at - known[first] > kMaxWindowPoses) continue;

@@ -15,15 +15,12 @@ inline constexpr double kErrorWindow_m = 100.0;
 /// Earlier poses that are searched: 100 m at 2.6 m/s with 31 frames per second.
 inline constexpr std::size_t kMaxWindowPoses = 1200;
 
-/// Poses that an estimate may lack within the part: about a second with 31 frames per second. The
-/// true path over a longer gap is not known here.
-inline constexpr std::size_t kMaxGapPoses = 31;
-
 /// A camera at an instant: where it truly was, and where the aligned estimate says it was.
 struct PosePair {
   int map_id = 0;
   Pose T_world_camera;
   Pose T_world_camera_estimate;
+  double detour_m = 0.0;  ///< MatchedPose::detour_m since the pose before
 };
 
 /// Scale of the estimate over the last 100 m against the truth: between an instant and the last one
@@ -43,8 +40,7 @@ struct RelativeErrorAt {
 
 /// Relative error of the pose at an instant to the last one from which the true path to it is
 /// longer than kErrorWindow_m (Geiger, Lenz, Urtasun 2012, sec. 3, of the pair that ends here).
-/// Empty where no earlier pose of the same map is far enough away without a gap of more than
-/// kMaxGapPoses in between.
+/// Empty where no earlier pose of the same map is far enough away.
 /// @param poses  as for scale_error_at
 /// @return one entry for each pose
 [[nodiscard]] std::vector<std::optional<RelativeErrorAt>> relative_errors_along(

@@ -9,7 +9,6 @@
 namespace overfly::wmm2025 {
 
 inline constexpr int kDegree = 12;
-inline constexpr double kEpochYear = 2025.0;
 
 /// Gauss coefficients of one degree and order [nT], Schmidt semi-normalised, and their change
 /// [nT/year].

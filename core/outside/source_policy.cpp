@@ -98,13 +98,6 @@ SourcePolicy SourcePolicy::inside(std::vector<fs::path> folders, std::vector<fs:
   return policy;
 }
 
-SourcePolicy SourcePolicy::narrowed_to(const fs::path& folder) const {
-  if (!confined_) return {};
-  SourcePolicy policy = inside({folder});
-  policy.excluded_ = excluded_;
-  return policy;
-}
-
 bool SourcePolicy::holds(const fs::path& plain) const {
   const auto holds_it = [&](const fs::path& folder) { return lies_in(plain, folder); };
   return std::any_of(folders_.begin(), folders_.end(), holds_it) &&

@@ -23,9 +23,6 @@ class SourcePolicy {
   static SourcePolicy inside(std::vector<std::filesystem::path> folders,
                              std::vector<std::filesystem::path> excluded = {});
 
-  /// Restricts the policy to one folder, for files that are named by a file. A policy that allows
-  /// any file stays unrestricted.
-  [[nodiscard]] SourcePolicy narrowed_to(const std::filesystem::path& folder) const;
   /// False if any regular file is allowed.
   [[nodiscard]] bool confined() const { return confined_; }
 

@@ -114,9 +114,9 @@ std::optional<std::int64_t> ns_from_decimal(Decimal decimal, int exponent) {
       std::from_chars(decimal.digits.data(), end, size_ns).ec != std::errc()) {
     return std::nullopt;
   }
-  if (round_up) ++size_ns;
-  if (size_ns > static_cast<std::uint64_t>(INT64_MAX)) return std::nullopt;
-  const auto ns = static_cast<std::int64_t>(size_ns);
+  const std::uint64_t extra_ns = round_up ? 1 : 0;
+  if (size_ns > static_cast<std::uint64_t>(INT64_MAX) - extra_ns) return std::nullopt;
+  const auto ns = static_cast<std::int64_t>(size_ns + extra_ns);
   return decimal.negative ? -ns : ns;
 }
 

@@ -29,8 +29,11 @@ class EnergyControl {
 
   EnergyControl(const Parameters& parameters, const dynamics::Airframe& airframe);
 
-  /// Goes on with others.
-  void set_parameters(const Parameters& parameters) { parameters_ = parameters; }
+  /// Goes on with others, at the same throttle.
+  void set_parameters(const Parameters& parameters) {
+    throttle_integral_ += 0.01 * (parameters_.trim_throttle - parameters.trim_throttle);
+    parameters_ = parameters;
+  }
   /// Starts from a steady flight.
   void start_from(double throttle, double pitch_rad);
   [[nodiscard]] Output update(const EnergyDemand& demand, const FlightState& state, double dt_s);

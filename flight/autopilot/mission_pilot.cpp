@@ -56,6 +56,10 @@ void MissionPilot::start(const FlightState& state, std::size_t item) {
 }
 
 void MissionPilot::set_parameters(const Parameters& parameters) {
+  // On the way to another circle no turns count.
+  const bool other_circle = parameters.wp_loiter_rad != parameters_.wp_loiter_rad;
+  const bool has_item = index_ < mission_.items.size();
+  if (other_circle && has_item && mission_.items[index_].radius_m == 0.0) captured_ = false;
   parameters_ = parameters;
   guidance_.set_parameters(parameters);
   if (phase_ == FlightPhase::kReturn) place_return();

@@ -21,11 +21,15 @@ void BootClock::follow(std::int64_t step_ns) {
   agreeing_ = 0;
   first_ = std::min(first_ + 1, kBelieved);
   if (before_jump_ns_) {
-    if (++since_jump_ == kBelieved) before_jump_ns_.reset();
-  } else if (step_ns > kMaxBackNs) {
+    least_step_ns_ = std::min(least_step_ns_, step_ns);
+    if (++since_jump_ < kBelieved) return;
+    before_jump_ns_.reset();
+    usual_step_ns_ = std::max<std::int64_t>(least_step_ns_, 0);
+  } else if (step_ns > std::max(kMaxBackNs, 2 * usual_step_ns_)) {
     // After a wrong stamp less far ahead, right ones are plausible.
     before_jump_ns_ = latest_->t_ns;
     since_jump_ = 1;
+    least_step_ns_ = step_ns;
     right_until_ns_.reset();
   }
 }

@@ -16,10 +16,10 @@ namespace overfly::flight::logs {
 /// others are counted and left out, because records of DataFlash have no checksum.
 ///
 /// The first stamp has none before it to be compared with, and one that jumps ahead by more than
-/// 2 s may be damaged or come after a gap. Until two more stamps follow such a one, the clock is
-/// not proven. If others are believed instead, the unproven ones were wrong: they begin no run of
-/// the clock, and the time in front of a jump goes on. Readers hold the messages of unproven stamps
-/// (HeldMessages) to take them back then.
+/// 2 s (of a slower clock: by more than two of its steps) may be damaged or come after a gap. Until
+/// two more stamps follow such a one, the clock is not proven. If others are believed instead, the
+/// unproven ones were wrong: they begin no run of the clock, and the time in front of a jump goes
+/// on. Readers hold the messages of unproven stamps (HeldMessages) to take them back then.
 class BootClock {
  public:
   /// Stamps in a row that agree and are then believed.
@@ -48,6 +48,8 @@ class BootClock {
   int first_ = 0;  ///< stamps taken since the first one, up to kBelieved
   std::optional<std::int64_t> before_jump_ns_;  ///< the latest time in front of an unproven jump
   int since_jump_ = 0;                          ///< stamps taken from that jump on
+  std::int64_t least_step_ns_ = 0;              ///< of these
+  std::int64_t usual_step_ns_ = 0;              ///< at least that of the last proven ones
   std::optional<std::int64_t> right_until_ns_;  ///< of the times that were not proven
   bool first_were_wrong_ = false;
   std::int64_t suspect_ns_ = 0;

@@ -161,6 +161,10 @@ Status CameraCheckOptions::validate() const {
 Result<std::vector<CameraCheckRow>> check_camera(const Scenario& scenario,
                                                  const CameraCheckOptions& options) {
   if (Status status = options.validate(); !status) return status.error();
+  if (scenario.is_live()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight: is that of a live vehicle: the check needs one that is known in advance"};
+  }
   const Scenario quiet = without_sensor(scenario);
   FrameMakerOptions making;
   making.renderer_factory = options.renderer_factory;
@@ -168,10 +172,6 @@ Result<std::vector<CameraCheckRow>> check_camera(const Scenario& scenario,
   making.notice = options.notice;
   const auto maker = FrameMaker::open(quiet, making);
   if (!maker) return maker.error();
-  if (!(*maker)->duration_ns()) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "flight: its length is not known in advance; the check needs one that is planned"};
-  }
   const std::int64_t last_first = (*maker)->frames_total() - 2;
   if (last_first < 0) {
     return Error{ErrorCode::kInvalidArgument,

@@ -82,6 +82,21 @@ Result<Trajectory> camera_truth(const Dataset& dataset,
   return truth.trajectory;
 }
 
+namespace {
+
+/// Poses without times, at those of the images with their numbers.
+Trajectory at_times_of(const Dataset& dataset, const Trajectory& poses) {
+  Trajectory stamped;
+  const std::size_t count = std::min(poses.size(), dataset.images.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    // Stamps of images increase.
+    if (!stamped.append({dataset.images[i].t_ns, poses.poses()[i].pose})) break;
+  }
+  return stamped;
+}
+
+}  // namespace
+
 evaluation::Score score_of(const Dataset& dataset,
                            const TrackedDataset& tracked,
                            const Trajectory& T_world_camera,
@@ -95,7 +110,6 @@ evaluation::Score score_of(const Dataset& dataset,
   if (!truth_has_times) {
     // Line i of a file without times belongs to image i.
     options.association = evaluation::Association::kIndex;
-    options.has_times = false;
     for (std::size_t i = 0; i < track.samples.size(); ++i) {
       track.samples[i].frame = static_cast<std::int64_t>(i);
     }
@@ -103,7 +117,8 @@ evaluation::Score score_of(const Dataset& dataset,
       options.flight[i].frame = static_cast<std::int64_t>(i);
     }
   }
-  evaluation::Score score = evaluation::score(T_world_camera, track, options);
+  const Trajectory truth = truth_has_times ? T_world_camera : at_times_of(dataset, T_world_camera);
+  evaluation::Score score = evaluation::score(truth, track, options);
   if (crash_of(tracked)) {
     score.outcome =
         tracked.records.back().hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
@@ -135,6 +150,7 @@ TrackFigures figures_of(const TrackedDataset& tracked) {
   }
   figures.maps = static_cast<int>(maps.size());
   figures.crash = crash_of(tracked);
+  figures.hung = figures.crash && tracked.records.back().hung;
   const std::vector<double>& ms = tracked.tracking.ms;
   const double wall_s = 1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0);
   if (wall_s > 0.0) figures.cpu_percent = 100.0 * tracked.resources.cpu_s / wall_s;

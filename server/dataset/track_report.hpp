@@ -20,7 +20,7 @@ namespace overfly::server {
                                               const TrajectoryFile& truth,
                                               std::vector<std::string>& notes);
 
-/// Scores the answers with every alignment; CRASHED if the estimator crashed.
+/// Scores the answers with every alignment; CRASHED or TIMEOUT if the estimator ended.
 /// @param init_true_depth_m  true depth along the optical axis at the first tracked pose
 [[nodiscard]] evaluation::Score score_of(const Dataset& dataset,
                                          const TrackedDataset& tracked,
@@ -37,6 +37,7 @@ struct TrackFigures {
   /// From the first image to the first tracked one; empty if no image was tracked.
   std::optional<double> initialised_after_s;
   std::optional<std::string> crash;  ///< why the estimator ended
+  bool hung = false;                 ///< with `crash`: it did not answer
   double cpu_percent = 0.0;          ///< of one processor while it tracked
   std::string measured_process;      ///< whose resources were measured, for people
 };

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/text/lower_case.hpp"
 #include "core/text/shown_path.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "server/files/plain_name.hpp"
@@ -332,7 +333,9 @@ Status LogUploads::remove(const fs::path& file) const {
   const auto is_own = [&](const fs::path& folder) {
     return !own.empty() && fs::equivalent(folder, own, failed);
   };
-  if (is_own(parent.parent_path()) && file.filename() == parent.filename().string() + ".json") {
+  const bool is_mapping =
+      file.stem() == parent.filename() && lower_case(file.extension().string()) == ".json";
+  if (is_own(parent.parent_path()) && is_mapping) {
     if (fs::remove_all(parent, failed) > 0 && !failed) return {};
     return Error{ErrorCode::kIo, parent.string() + ": cannot be deleted: " + failed.message()};
   }

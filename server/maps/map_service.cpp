@@ -136,7 +136,7 @@ Result<std::shared_ptr<const MapWorld>> MapService::open(
   if (!opened) return opened.error();
   const std::string key = world_key(scenario);
   if (auto known = worlds_.find(key); known && known->opened() == *opened) return known;
-  auto world = std::make_shared<const MapWorld>(*opened);
+  auto world = std::make_shared<const MapWorld>(*opened, key);
   worlds_.keep(key, world);
   return world;
 }

@@ -31,9 +31,23 @@ MercatorBox box_of(const WorldExtent& extent) {
   return {box.low - margin, box.high + margin};
 }
 
-std::string version_of(const OpenedWorld& opened) {
-  std::string text = opened.manifest ? opened.manifest->digest : std::string();
-  for (const auto& [file, digest] : opened.world.data_hashes) text += file + digest + "\n";
+std::string version_of(const OpenedWorld& opened, const std::string& key) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { (text += part) += '\0'; };
+  add(key);
+  add(opened.manifest ? opened.manifest->digest : std::string());
+  for (const auto& [file, digest] : opened.world.data_hashes) {
+    add(file);
+    add(digest);
+  }
+  // Side-cars and the sources of virtual rasters have no digest; those of large files are samples.
+  for (const terrain::WorldFile& file : opened.files) {
+    add(file.file.string());
+    if (!file.identity) continue;
+    add(std::to_string(file.identity->size_bytes) + " " +
+        std::to_string(file.identity->modified_ns) + " " +
+        std::to_string(file.identity->changed_ns));
+  }
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()),
                                             text.size());
   constexpr std::size_t kDigits = 16;
@@ -42,8 +56,8 @@ std::string version_of(const OpenedWorld& opened) {
 
 }  // namespace
 
-MapWorld::MapWorld(std::shared_ptr<const OpenedWorld> opened)
-    : opened_(std::move(opened)), version_(version_of(*opened_)) {
+MapWorld::MapWorld(std::shared_ptr<const OpenedWorld> opened, const std::string& key)
+    : opened_(std::move(opened)), version_(version_of(*opened_, key)) {
   const WorldExtent extent = extent_of(opened_->world);
   box_ = box_of(extent);
   const double coarse_m = map_pixel_m(extent.centre.lat_rad, 0);

@@ -23,7 +23,8 @@ struct MercatorBox {
 class MapWorld {
  public:
   /// Reads heights around the imagery.
-  explicit MapWorld(std::shared_ptr<const OpenedWorld> opened);
+  /// @param key  of the scenario's world, see world_key
+  MapWorld(std::shared_ptr<const OpenedWorld> opened, const std::string& key);
 
   [[nodiscard]] const terrain::World& world() const { return opened_->world; }
   [[nodiscard]] const terrain::TileSource& tiles() const { return *opened_->world.tiles; }
@@ -31,7 +32,7 @@ class MapWorld {
   [[nodiscard]] const MercatorBox& box() const { return box_; }
   /// The zoom level whose pixels are as fine as the texels, or finer by less than a factor of 2.
   [[nodiscard]] int finest_zoom() const { return finest_zoom_; }
-  /// Equal for worlds with equal files.
+  /// Another one for every change of the files and of the world's fields in the scenario.
   [[nodiscard]] const std::string& version() const { return version_; }
   /// A tile of the world; those used last are kept. Errors: as terrain::TileSource::tile.
   [[nodiscard]] Result<std::shared_ptr<const terrain::Tile>> tile(

@@ -14,6 +14,7 @@
 
 #include "core/barrier.hpp"
 #include "server/net/admission.hpp"
+#include "server/net/answer_sender.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/http_answers.hpp"
 #include "server/net/upload_receiver.hpp"
@@ -323,16 +324,12 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 void HttpSession::write(HttpResponse response) {
   if (admitted_ && place_) (void)place_->enter(ConnectionPhase::kSending);
   response_.emplace(http_answer(std::move(response), version_, keep_alive_, head_));
-  // The deadline is that of the whole transfer, which a slow link needs time for.
-  const ServerLimits& limits = context_->options.limits;
-  const std::uint64_t transfer_ms =
-      response_->body().size() * std::uint64_t{1000} / limits.min_answer_bytes_per_s;
-  stream_.expires_after(std::chrono::milliseconds(limits.idle_ms) +
-                        std::chrono::milliseconds(transfer_ms));
-  http::async_write(
-      stream_, *response_, [self = shared_from_this()](const error_code& error, std::size_t) {
-        self->attempt([&] { self->on_written(error, self->keep_alive_); });
-      });
+  send_answer(stream_,
+              *response_,
+              std::chrono::milliseconds(context_->options.limits.idle_ms),
+              [self = shared_from_this()](const error_code& error) {
+                self->attempt([&] { self->on_written(error, self->keep_alive_); });
+              });
 }
 
 void HttpSession::on_written(const error_code& error, bool keep_alive) {

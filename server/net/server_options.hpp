@@ -22,8 +22,6 @@ struct ServerLimits {
   std::int64_t max_stall_ms = 15'000;  ///< WebSocket: time to send one message; beyond: 4000
   std::int64_t header_ms = 10'000;     ///< time for a new connection's first request header
   std::int64_t idle_ms = 30'000;       ///< connections without traffic (WebSockets are pinged)
-  /// Answers may take longer to send than idle_ms if they are large, at this rate.
-  std::uint64_t min_answer_bytes_per_s = 16'384;
   /// Uploads that are slower on average, counted from when they have been waited for so long: 408.
   std::uint64_t min_upload_bytes_per_s = 1024;
   std::int64_t upload_grace_ms = 60'000;

@@ -130,7 +130,10 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
   EstimatorState& state = estimators_[estimator];
   const EstimateSample& sample = record.sample;
   const std::string& name = info_.estimators[estimator];
-  if (!record.crash.empty()) return log(sample.t_ns, "error", name + " crashed: " + record.crash);
+  if (!record.crash.empty()) {
+    const char* const what = record.hung ? " timed out: " : " crashed: ";
+    return log(sample.t_ns, "error", name + what + record.crash);
+  }
   if (!state.status.crash.empty()) return {};
   const TrackingState last = std::exchange(state.last, sample.state);
   const int last_map_id = std::exchange(state.last_map_id, sample.map_id);

@@ -61,7 +61,7 @@ Result<RunInfo> RunManager::start(const std::string& scenario,
     filled.repeated = true;
     return *earlier;
   }
-  Result<Scenario> loaded = impl_->library.load(scenario, overrides);
+  Result<Scenario> loaded = impl_->library.load_to_fly(scenario, overrides);
   if (!loaded) return loaded.error();
   return start(std::move(*loaded), idempotency_key, &filled);
 }

@@ -50,16 +50,20 @@ class ScenarioLibrary {
   [[nodiscard]] std::vector<ScenarioEntry> list() const;
   /// The resolved document. Errors: kNotFound; as load_scenario.
   [[nodiscard]] Result<nlohmann::json> document(const std::string& name) const;
-  /// A scenario that a client may fly and that can be flown. Overrides must not change commands,
-  /// sockets and addresses of the scenario's file; a saved scenario may contain only those of the
-  /// owner's files.
-  /// Errors: kNotFound; kForbidden naming the field; as load_scenario, check_scenario.
-  [[nodiscard]] Result<Scenario> load(const std::string& name,
-                                      const std::vector<Override>& overrides = {}) const;
-  /// The same of a client's document, which may contain what a saved scenario may. Relative files
-  /// are relative to the owner's folder.
-  /// Errors: kForbidden naming the field; as resolve_scenario, check_scenario.
+  /// A scenario that can be flown, to be looked at. Errors: kNotFound; as load_scenario,
+  /// check_scenario.
+  [[nodiscard]] Result<Scenario> load(const std::string& name) const;
+  /// The same of a client's document. Relative files are relative to the owner's folder.
+  /// Errors: as resolve_scenario, check_scenario.
   [[nodiscard]] Result<Scenario> read(const nlohmann::json& document) const;
+  /// As load(), for a client who wants to fly it: overrides must not change commands, sockets and
+  /// addresses of the scenario's file; a saved scenario may contain only those of the owner's
+  /// files. Errors: as load(); kForbidden naming the field.
+  [[nodiscard]] Result<Scenario> load_to_fly(const std::string& name,
+                                             const std::vector<Override>& overrides = {}) const;
+  /// As read(), for a client who wants to fly or save it: it may contain what a saved scenario may.
+  /// Errors: as read(); kForbidden naming the field.
+  [[nodiscard]] Result<Scenario> read_to_fly(const nlohmann::json& document) const;
 
   /// Whether a client may fly scenarios that were read in another way: as for saved ones. Reads the
   /// owner's scenarios once, now. Errors of the check: kForbidden naming the field.
@@ -83,6 +87,10 @@ class ScenarioLibrary {
     bool saved = false;
   };
   [[nodiscard]] Result<Found> find(const std::string& name) const;
+  [[nodiscard]] Result<Scenario> load(const Found& found,
+                                      const std::vector<Override>& overrides) const;
+  /// As for saved scenarios.
+  [[nodiscard]] Status check_reach(const Scenario& wanted) const;
   [[nodiscard]] Status check_reach(const Scenario& wanted,
                                    const Found& found,
                                    const std::vector<Override>& overrides) const;

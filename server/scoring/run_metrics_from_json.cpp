@@ -109,6 +109,9 @@ std::vector<RelativeError> read_relative(const FileField& alignment) {
   if (!field) return errors;
   for (const FileField& entry : field->items()) {
     RelativeError& error = errors.emplace_back();
+    // Runs of earlier versions do not have the means.
+    error.translation_mean_percent = std::numeric_limits<double>::quiet_NaN();
+    error.rotation_mean_deg_per_100m = std::numeric_limits<double>::quiet_NaN();
     take(entry, "length_m", error.length_m);
     take(entry, "pairs", error.pairs);
     take(entry, "translation_percent", error.translation_percent);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/time.hpp"
 #include "server/timeline/count_frames.hpp"
 
 namespace overfly::server {
@@ -36,18 +37,34 @@ std::vector<FrameRow> frames_between(const RunTimeline& timeline,
   return timeline.frames(begin, end - std::min(begin, end), camera);
 }
 
+/// As MatchedPose::detour_m, from the frames in between.
+double detour_between_m(std::vector<FrameRow>::const_iterator from,
+                        std::vector<FrameRow>::const_iterator to) {
+  if (to->t_ns - from->t_ns <= kNsPerS) return 0.0;
+  const Eigen::Vector3d way_m = to->T_world_camera.translation - from->T_world_camera.translation;
+  double path_m = 0.0;
+  for (; from != to; ++from) {
+    path_m +=
+        (std::next(from)->T_world_camera.translation - from->T_world_camera.translation).norm();
+  }
+  return std::max(0.0, path_m - way_m.norm());
+}
+
 std::vector<std::optional<PosePair>> poses_of(const std::vector<EstimateRow>& rows,
                                               const std::vector<FrameRow>& frames,
                                               const RowAlignment& alignment,
                                               const Pose& T_body_camera) {
   std::vector<std::optional<PosePair>> poses(rows.size());
   auto frame = frames.begin();
+  auto last = frames.end();  // of the pose before
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const EstimateSample& sample = rows[i].sample;
     while (frame != frames.end() && frame->frame < sample.frame) ++frame;
     if (frame == frames.end() || frame->frame != sample.frame) continue;
     if (const auto T_world_body = alignment.T_world_body(rows[i])) {
-      poses[i] = {sample.map_id, frame->T_world_camera, *T_world_body * T_body_camera};
+      const double detour_m = last == frames.end() ? 0.0 : detour_between_m(last, frame);
+      poses[i] = {sample.map_id, frame->T_world_camera, *T_world_body * T_body_camera, detour_m};
+      last = frame;
     }
   }
   return poses;

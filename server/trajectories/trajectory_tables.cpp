@@ -98,7 +98,8 @@ Json error_tables(const FileScore& score,
     const std::int64_t t_ns = score.matches[i].t_ns;
     const Pose T_world_pose = alignment.S_world_vo * score.matches[i].T_vo_camera;
     poses.add(t_ns, T_world_pose);
-    pairs.push_back(evaluation::PosePair{0, score.matches[i].T_world_camera, T_world_pose});
+    pairs.push_back(evaluation::PosePair{
+        0, score.matches[i].T_world_camera, T_world_pose, score.matches[i].detour_m});
     if (const auto error = evaluation::scale_error_at(pairs, i)) {
       add_if_finite(scale, {t_ns, {100.0 * *error, 0.0, 0.0}});
     }

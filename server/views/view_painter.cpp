@@ -86,6 +86,8 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   if (!view) return view.error();
   if (*view == nullptr) return std::optional<Picture>();
   const SceneSettings& settings = request.scene;
+  // Only here, where no reference to one of them is held: a run may be scored at any time.
+  ribbons_.remove_if([](const ViewRibbons& known) { return known.is_outdated(); });
   ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
   const terrain::TileSource& tiles = *(*view)->world->tiles;
@@ -198,9 +200,6 @@ const ViewRibbons* ViewPainter::compared_ribbons(const std::shared_ptr<RunTimeli
 
 ViewRibbons& ViewPainter::ribbons_of(const std::shared_ptr<RunTimeline>& timeline,
                                      const std::string& alignment) {
-  ribbons_.remove_if([&](const ViewRibbons& ribbons) {
-    return ribbons.timeline() == timeline && ribbons.is_outdated();
-  });
   const auto known =
       std::find_if(ribbons_.begin(), ribbons_.end(), [&](const ViewRibbons& ribbons) {
         return ribbons.timeline() == timeline && ribbons.alignment() == alignment;

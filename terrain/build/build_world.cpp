@@ -44,10 +44,14 @@ Result<std::vector<CacheSource>> digested_sources(const WorldSpec& spec,
 
 constexpr std::size_t kKeyDigits = 16;
 
-/// A name that depends on the fields and on the contents of the files.
+/// A name that depends on the fields and on the contents of the files; if these are only sampled,
+/// on the times as well.
 std::string key_of(const CacheHeader& header) {
   std::string text = header.fields + header.layout;
-  for (const CacheSource& source : header.sources) text += source.file + source.digest;
+  for (const CacheSource& source : header.sources) {
+    text += source.file + source.digest;
+    if (digest_is_sampled(source.digest)) text += std::to_string(source.modified_ns);
+  }
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
   return sha256_hex({bytes, text.size()}).substr(0, kKeyDigits);
 }
@@ -131,7 +135,7 @@ Result<CacheHeader> new_header(const WorldSpec& spec,
                                const BuildProgress& progress) {
   CacheHeader header;
   header.fields = cache_fields(spec);
-  header.layout = world_fingerprint(tiles.grid(), tiles.elevation());
+  header.layout = world_fingerprint(tiles.grid(), tiles.imagery(), tiles.elevation());
   auto sources = digested_sources(spec, progress);
   if (!sources) return sources.error();
   header.sources = std::move(*sources);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "terrain/elevation/height_blocks.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -179,6 +181,7 @@ std::optional<HeightGrid> unpack_heights(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 3) return std::nullopt;
   HeightGrid grid;
   grid.columns = bytes[0] | bytes[1] << 8;
+  if (grid.columns != kBlockPosts + 1) return std::nullopt;
   grid.rows = grid.columns;
   const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
   const auto plain = decompress(bytes.subspan(2), 4 * count);

@@ -25,7 +25,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Heights are stored as differences of their bit patterns, byte by byte, and compressed in the
 /// same way.
+/// @param grid  a block of (kBlockPosts + 1)^2 posts
 [[nodiscard]] Bytes pack_heights(const HeightGrid& grid);
+/// Empty if the bytes are not those of a block.
 [[nodiscard]] std::optional<HeightGrid> unpack_heights(std::span<const std::uint8_t> bytes);
 
 }  // namespace overfly::terrain

@@ -7,7 +7,7 @@
 
 #include "terrain/files/file_digest.hpp"
 #include "terrain/place/geoid.hpp"
-#include "terrain/raster/gdal_dataset.hpp"
+#include "terrain/raster/source_files.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -19,27 +19,6 @@ fs::path home_of(const WorldSpec& spec) { return fs::absolute(spec.cache_folder)
 
 std::string relative_name(const WorldSpec& spec, const fs::path& file) {
   return fs::absolute(file).lexically_normal().lexically_proximate(home_of(spec)).generic_string();
-}
-
-/// Adds a file and the files to which it refers, in a fixed order.
-Status add_files(const fs::path& file, std::set<fs::path>& files, int depth) {
-  constexpr int kDeepest = 8;
-  if (depth > kDeepest || !files.insert(fs::absolute(file).lexically_normal()).second) return {};
-  auto dataset = open_raster(file);
-  if (!dataset) return dataset.error();
-  const GdalMessages quiet;
-  const CPLStringList named((*dataset)->GetFileList());
-  for (int i = 0; i < named.size(); ++i) {
-    const fs::path other = fs::absolute(named[i]).lexically_normal();
-    std::error_code ignored;
-    if (!fs::is_regular_file(other, ignored)) continue;
-    if (other.extension() == ".vrt") {
-      Status added = add_files(other, files, depth + 1);
-      if (!added) return added;
-    }
-    files.insert(other);
-  }
-  return {};
 }
 
 template <typename Layer>
@@ -72,16 +51,17 @@ std::string cache_fields(const WorldSpec& spec) {
 Result<std::vector<CacheSource>> cache_sources(const WorldSpec& spec) {
   std::set<fs::path> files;
   for (const ImageryLayer& layer : spec.imagery) {
-    const Status added = add_files(layer.file, files, 0);
+    const Status added = add_source_files(layer.file, files);
     if (!added) return added.error();
   }
   for (const ElevationLayer& layer : spec.elevation) {
-    const Status added = add_files(layer.file, files, 0);
+    const Status added = add_source_files(layer.file, files);
     if (!added) return added.error();
   }
   std::vector<CacheSource> sources;
   for (const fs::path& file : files) {
     std::error_code failed;
+    if (!fs::is_regular_file(file, failed)) continue;  // may appear next to a raster
     CacheSource source;
     source.file = relative_name(spec, file);
     source.size_bytes = fs::file_size(file, failed);
@@ -108,6 +88,7 @@ std::string source_changes(const WorldSpec& spec,
     if (old == before.end()) return source.file + " is new";
     if (old->size_bytes != source.size_bytes) return source.file + " has a different size";
     if (old->modified_ns == source.modified_ns) continue;
+    if (digest_is_sampled(old->digest)) return source.file + " has another modification time";
     const auto digest = file_digest(source_path(spec, source));
     if (!digest || *digest != old->digest) return source.file + " has changed";
   }

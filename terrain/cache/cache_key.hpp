@@ -11,8 +11,9 @@
 
 namespace overfly::terrain {
 
-/// Increase whenever the same files would give different tiles or heights.
-inline constexpr int kCacheVersion = 3;
+/// Increase whenever the same files would give different tiles or heights, or a cache of before
+/// could not be recognised as up to date.
+inline constexpr int kCacheVersion = 4;
 
 struct CacheSource {
   std::string file;  ///< relative to the folder that holds the cache
@@ -24,14 +25,14 @@ struct CacheSource {
 /// The manifest's fields that affect tiles and heights, as text; equal texts mean equal results.
 [[nodiscard]] std::string cache_fields(const WorldSpec& spec);
 
-/// All files from which the layers are read (including side-cars and the sources of virtual
-/// rasters), with size and time but without digests. Errors: kNotFound, kUnreadable.
+/// All files from which the layers are read (including the sources of virtual rasters, and the
+/// side-cars of both), with size and time but without digests. Errors: kNotFound, kUnreadable.
 [[nodiscard]] Result<std::vector<CacheSource>> cache_sources(const WorldSpec& spec);
 
 [[nodiscard]] std::filesystem::path source_path(const WorldSpec& spec, const CacheSource& source);
 
-/// Empty if the files are unchanged (same size and time, or else same digest); otherwise which file
-/// differs, and how.
+/// Empty if the files are unchanged (same size and time, or else same digest of the whole file);
+/// otherwise which file differs, and how.
 [[nodiscard]] std::string source_changes(const WorldSpec& spec,
                                          const std::vector<CacheSource>& before,
                                          const std::vector<CacheSource>& now);

@@ -9,6 +9,7 @@
 #include "core/outside/outside_json.hpp"
 #include "terrain/cache/chunk_file.hpp"
 #include "terrain/floor_div.hpp"
+#include "terrain/raster/area_average.hpp"
 
 namespace overfly::terrain {
 namespace fs = std::filesystem;
@@ -72,7 +73,10 @@ std::optional<CacheHeader> read_header(const fs::path& file) {
     const auto check = json->at("check").get<std::string>();
     json->erase("check");
     if (check != check_of(*json)) return std::nullopt;
-    return header_from(*json);
+    CacheHeader header = header_from(*json);
+    const Result<Json> fields = json_from_outside<Json>(header.fields, file.string());
+    if (!fields || fields->at("version") != kCacheVersion) return std::nullopt;
+    return header;
   } catch (const Json::exception&) {
     return std::nullopt;
   }
@@ -164,17 +168,12 @@ Result<Tile> WorldDiskCache::tile(const TileId& id) const {
   const int column = floor_div(id.col, kChunkTiles);
   const int row = floor_div(id.row, kChunkTiles);
   const auto& chunks = header_.chunks[static_cast<std::size_t>(id.level)];
-  const auto nothing = [] {
-    Tile tile{Image(kTileSide, kTileSide, 3), Image(kTileSide, kTileSide, 1)};
-    for (std::size_t i = 0; i < tile.rgb.data.size(); ++i) tile.rgb.data[i] = kVoidRgb[i % 3];
-    return tile;
-  };
-  if (!chunks.contains({column, row})) return nothing();
+  if (!chunks.contains({column, row})) return void_patch(kTileSide, kTileSide);
   const fs::path file = tile_chunk_path(folder_, id.level, column, row);
   const int index = (id.row - row * kChunkTiles) * kChunkTiles + (id.col - column * kChunkTiles);
   auto piece = read_piece(file, index);
   if (!piece) return piece.error();
-  if (piece->empty()) return nothing();
+  if (piece->empty()) return void_patch(kTileSide, kTileSide);
   auto tile = unpack_tile(*piece);
   if (!tile) return Error{ErrorCode::kIo, file.string() + ": contains a tile that cannot be read"};
   return std::move(*tile);
@@ -186,13 +185,15 @@ Result<HeightGrid> WorldDiskCache::block(int level, int column, int row) const {
   auto piece = read_piece(file, (row % kChunkBlocks) * kChunkBlocks + column % kChunkBlocks);
   if (!piece) return piece.error();
   auto grid = unpack_heights(*piece);
-  if (!grid || grid->columns != kBlockPosts + 1) {
+  if (!grid) {
     return Error{ErrorCode::kIo, file.string() + ": contains heights that cannot be read"};
   }
   return std::move(*grid);
 }
 
-Result<std::optional<ValidityGrid>> WorldDiskCache::validity(int layer) const {
+Result<std::optional<ValidityGrid>> WorldDiskCache::validity(int layer,
+                                                             int width_px,
+                                                             int height_px) const {
   const auto index = static_cast<std::size_t>(layer);
   if (index >= header_.masked.size() || !header_.masked[index]) {
     return std::optional<ValidityGrid>();
@@ -201,7 +202,7 @@ Result<std::optional<ValidityGrid>> WorldDiskCache::validity(int layer) const {
   auto piece = read_piece(file, 0);
   if (!piece) return piece.error();
   const auto bytes = unpack_bytes(*piece);
-  auto grid = bytes ? ValidityGrid::from_bytes(*bytes) : std::nullopt;
+  auto grid = bytes ? ValidityGrid::from_bytes(*bytes, width_px, height_px) : std::nullopt;
   if (!grid) return Error{ErrorCode::kIo, file.string() + ": is damaged"};
   return grid;
 }

@@ -65,8 +65,10 @@ class WorldDiskCache final : public HeightStore {
   [[nodiscard]] bool holds(int level) const { return level >= 0 && level < header_.levels; }
   [[nodiscard]] const HeightSurvey& survey() const override { return header_.survey; }
   [[nodiscard]] Result<HeightGrid> block(int level, int column, int row) const override;
-  /// Empty for a layer without mask. Errors: kIo.
-  [[nodiscard]] Result<std::optional<ValidityGrid>> validity(int layer) const;
+  /// Empty for a layer without mask. Errors: kIo, also if the mask is not of a raster of this size.
+  [[nodiscard]] Result<std::optional<ValidityGrid>> validity(int layer,
+                                                             int width_px,
+                                                             int height_px) const;
 
   [[nodiscard]] const CacheHeader& header() const { return header_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

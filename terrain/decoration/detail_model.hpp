@@ -27,8 +27,6 @@ struct DetailStatistics {
   /// Root of band_energy divided by the value predicted from the local contrast.
   double contrast_gain = 1.0;
   int tiles = 0;  ///< number of measured tiles
-  /// Exponent of the power spectrum per area that corresponds to `decay`: power ~ frequency^slope.
-  [[nodiscard]] double spectrum_slope() const;
 };
 
 }  // namespace overfly::terrain

@@ -65,11 +65,6 @@ void add_tile(const Tile& tile, Sums& sums) {
 
 }  // namespace
 
-double DetailStatistics::spectrum_slope() const {
-  // An octave of the spectrum f^s over the plane has power ~ f^(s + 2).
-  return 2.0 * std::log2(decay) - 2.0;
-}
-
 Result<DetailStatistics> measure_detail(const TileSource& tiles) {
   Sums sums;
   DetailStatistics statistics;

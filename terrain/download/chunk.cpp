@@ -185,6 +185,9 @@ std::string words_of(const HttpReply& reply) {
 }
 
 Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply& reply) {
+  if (reply.status == 204 && !chunk.may_be_absent) {
+    return {Kind::kTryAgain, "the answer is empty"};
+  }
   if (reply.status != 200) {
     const std::string status = "HTTP status " + std::to_string(reply.status);
     return {chunk.may_be_absent ? Kind::kAbsent : Kind::kFailed, status};
@@ -193,7 +196,7 @@ Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply
                      reply.content_type.find("html") != std::string::npos ||
                      reply.content_type.find("xml") != std::string::npos ||
                      reply.content_type.find("text/plain") != std::string::npos;
-  if (words || reply.body.empty() || reply.body[0] == '{' || reply.body[0] == '<') {
+  if (words || reply.body[0] == '{' || reply.body[0] == '<') {
     // Services under load report temporary errors as text as well as by status.
     return {Kind::kTryAgain, "the service answered with text: " + words_of(reply)};
   }

@@ -23,7 +23,7 @@ int CPL_STDCALL go_on(double, const char*, void* stop) {
   return static_cast<const std::atomic<bool>*>(stop)->load() ? FALSE : TRUE;
 }
 
-/// The status that GDAL reports only as text ("HTTP error code : 404").
+/// GDAL reports the status only as text ("HTTP error code : 404"), and none for a success.
 int status_of(const CPLHTTPResult& result) {
   const std::string said = result.pszErrBuf == nullptr ? "" : result.pszErrBuf;
   const std::size_t at = said.find("HTTP error code");
@@ -31,7 +31,8 @@ int status_of(const CPLHTTPResult& result) {
     const std::size_t digit = said.find_first_of("0123456789", at);
     return digit == std::string::npos ? 0 : std::atoi(said.c_str() + digit);
   }
-  return result.nStatus == 0 && said.empty() ? 200 : 0;
+  if (result.nStatus != 0 || !said.empty()) return 0;
+  return result.nDataLen > 0 ? 200 : 204;
 }
 
 }  // namespace
@@ -65,7 +66,6 @@ HttpReply http_get(const std::string& url, double stall_s, const std::atomic<boo
                      nullptr,
                      nullptr));
   HttpReply reply;
-  reply.cancelled = stop.load();
   if (!result) {
     reply.error = messages.text();
     return reply;

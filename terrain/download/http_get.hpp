@@ -10,12 +10,13 @@
 namespace overfly::terrain::download {
 
 struct HttpReply {
-  int status = 0;            ///< of the last answer after redirects; 0 = no complete answer
+  /// Of the last answer after redirects; 0 = no complete answer. Each success is 200, or 204 if it
+  /// has no body.
+  int status = 0;
   std::string content_type;  ///< in lower case
   std::vector<std::uint8_t> body;
   std::optional<double> retry_after_s;  ///< wait requested by the service
   std::string error;                    ///< why there is no complete answer; empty if there is one
-  bool cancelled = false;
 };
 
 /// Follows redirects; never throws, never prints. Thread-safe.

@@ -93,6 +93,7 @@ Result<ImageServiceLimits> ask_image_service(const std::string& service, PoliteF
   const std::string url = service + "?f=json";
   nlohmann::json answer;
   const auto asked = fetcher.get(url, [&](const HttpReply& reply) -> Verdict {
+    if (reply.status == 204) return {Verdict::Kind::kTryAgain, "the answer is empty"};
     if (reply.status != 200) {
       return {Verdict::Kind::kFailed, "HTTP status " + std::to_string(reply.status)};
     }

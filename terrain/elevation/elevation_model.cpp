@@ -266,7 +266,9 @@ std::string ElevationModel::fingerprint() const {
                 known.x_min,
                 known.y_min);
   std::string result = text;
-  for (const std::string& relation : relations()) result += "; " + relation;
+  for (const RasterPtr& raster : parts_->rasters) {
+    result += "; posts " + raster->post_from_map().fingerprint() + ", " + raster->relation();
+  }
   return result;
 }
 

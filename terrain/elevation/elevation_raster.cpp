@@ -236,7 +236,7 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
   if (has_nodata != 0) nodata_ = nodata;
   if (layer.nodata) nodata_ = layer.nodata;
   trusted_ = layer.nodata.has_value();
-  masked_ = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  masked_ = !layer.nodata && (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
 
   auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file_);
   if (!wgs84_from_crs) return wgs84_from_crs.error();

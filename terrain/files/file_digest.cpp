@@ -13,6 +13,7 @@ namespace {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kWholeBytes = 32 * kMiB;
 constexpr int kSamples = 32;
+constexpr std::string_view kSampled = "sha256-sampled:";
 
 }  // namespace
 
@@ -38,7 +39,9 @@ Result<std::string> file_digest(const std::filesystem::path& file) {
     hash.add({buffer.data(), static_cast<std::size_t>(in.gcount())});
     in.clear();
   }
-  return (whole ? "sha256:" : "sha256-sampled:") + hex_text(hash.finish());
+  return (whole ? "sha256:" : std::string(kSampled)) + hex_text(hash.finish());
 }
+
+bool digest_is_sampled(std::string_view digest) { return digest.starts_with(kSampled); }
 
 }  // namespace overfly::terrain

@@ -53,6 +53,23 @@ KeptLevels& kept_levels() {
 
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
+/// A description of a few bytes may declare any size. Numbers of texels along a side are computed
+/// as int, also after rounding up to a power of two.
+Status check_raster_size(GDALDataset& dataset, const std::filesystem::path& file) {
+  constexpr int kMostSidePx = 1 << 30;
+  constexpr double kMostTexels = 1e13;
+  const int width = dataset.GetRasterXSize();
+  const int height = dataset.GetRasterYSize();
+  if (width <= kMostSidePx && height <= kMostSidePx &&
+      static_cast<double>(width) * height <= kMostTexels) {
+    return {};
+  }
+  return Error{ErrorCode::kUnreadable,
+               file.string() + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                   " texels: must be at most " + std::to_string(kMostSidePx) +
+                   " along a side and 1e13 in all"};
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
@@ -65,6 +82,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   auto opened = open_raster(file);
   if (!opened) return opened.error();
   GDALDataset& dataset = **opened;
+  if (Status sized = check_raster_size(dataset, file); !sized) return sized.error();
   raster->width_px_ = dataset.GetRasterXSize();
   raster->height_px_ = dataset.GetRasterYSize();
   raster->format_ = dataset.GetDriver()->GetDescription();

@@ -32,27 +32,20 @@ Eigen::Vector2d texel_size_px(const SmoothMap<2>& pixel_from_map, double texel_m
 
 }  // namespace
 
-Result<MappedImagery> MappedImagery::aligned(std::shared_ptr<const ImageryRaster> raster,
-                                             const TileGrid& grid,
-                                             int pad_x,
-                                             int pad_y,
-                                             std::optional<ValidityGrid> validity,
-                                             const Cancelled& cancelled) {
+MappedImagery MappedImagery::aligned(std::shared_ptr<const ImageryRaster> raster,
+                                     const TileGrid& grid,
+                                     int pad_x,
+                                     int pad_y) {
   MappedImagery layer(std::move(raster), grid);
   layer.pad_x_ = pad_x;
   layer.pad_y_ = pad_y;
-  layer.validity_ = std::move(validity);
-  const Status read = layer.read_validity(cancelled);
-  if (!read) return read.error();
   return layer;
 }
 
 Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster> raster,
                                             const MapPlane& plane,
                                             const TileGrid& grid,
-                                            const std::optional<Turn>& turn,
-                                            std::optional<ValidityGrid> validity,
-                                            const Cancelled& cancelled) {
+                                            const std::optional<Turn>& turn) {
   MappedImagery layer(std::move(raster), grid);
   const Georeference& place = layer.raster_->georeference();
   const std::string file = layer.raster_->file().string();
@@ -79,9 +72,6 @@ Result<MappedImagery> MappedImagery::warped(std::shared_ptr<const ImageryRaster>
                      "plane over the imagery"};
   }
   layer.texel_px_ = texel_size_px(*layer.pixel_from_map_, grid.texel_m);
-  layer.validity_ = std::move(validity);
-  const Status read = layer.read_validity(cancelled);
-  if (!read) return read.error();
   return layer;
 }
 
@@ -96,12 +86,18 @@ Result<std::vector<std::optional<Turn>>> MappedImagery::turns_over_grid(const Im
                     raster.file().string());
 }
 
-Status MappedImagery::read_validity(const Cancelled& cancelled) {
+Status MappedImagery::find_validity(std::optional<ValidityGrid> known, const Cancelled& cancelled) {
+  validity_ = std::move(known);
   if (!raster_->has_mask() || validity_) return {};
   auto validity = ValidityGrid::read(*raster_, cancelled);
   if (!validity) return validity.error();
   validity_ = std::move(*validity);
   return {};
+}
+
+std::string MappedImagery::fingerprint() const {
+  if (!pixel_from_map_) return "texels of the grid";
+  return "texels " + pixel_from_map_->fingerprint();
 }
 
 Eigen::Vector2d MappedImagery::pixel_from_map(double x_map_m, double y_map_m) const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "terrain/cancelled.hpp"
 #include "terrain/imagery/imagery_raster.hpp"
@@ -18,27 +19,28 @@ class MappedImagery {
  public:
   /// The layer whose grid is used for the tiles: grid texel (0, 0) is file texel (-pad_x, -pad_y),
   /// with pads that are multiples of 2^(levels - 1).
-  /// @param validity  of the raster, if it was read before
-  /// Errors: kIo, kCancelled.
-  static Result<MappedImagery> aligned(std::shared_ptr<const ImageryRaster> raster,
-                                       const TileGrid& grid,
-                                       int pad_x,
-                                       int pad_y,
-                                       std::optional<ValidityGrid> validity,
-                                       const Cancelled& cancelled);
-  /// A layer that is resampled. Errors: also kInvalidArgument if the grid cannot be transformed to
-  /// its CRS.
+  static MappedImagery aligned(std::shared_ptr<const ImageryRaster> raster,
+                               const TileGrid& grid,
+                               int pad_x,
+                               int pad_y);
+  /// A layer that is resampled.
   /// @param turn  the one of `turns_over_grid` to which its columns refer
+  /// Errors: kInvalidArgument if the grid cannot be transformed to its CRS.
   static Result<MappedImagery> warped(std::shared_ptr<const ImageryRaster> raster,
                                       const MapPlane& plane,
                                       const TileGrid& grid,
-                                      const std::optional<Turn>& turn,
-                                      std::optional<ValidityGrid> validity,
-                                      const Cancelled& cancelled);
+                                      const std::optional<Turn>& turn);
   /// The turns of the earth on which a file meets the grid; each needs a separate layer.
   static Result<std::vector<std::optional<Turn>>> turns_over_grid(const ImageryRaster& raster,
                                                                   const MapPlane& plane,
                                                                   const TileGrid& grid);
+
+  /// Finds where the raster has texels; call it once, before tiles are read.
+  /// @param known  the result, if it was read before
+  /// Errors: kIo, kCancelled.
+  Status find_validity(std::optional<ValidityGrid> known, const Cancelled& cancelled);
+  /// How the map relates to the file's pixels, as text: equal for equal relations.
+  [[nodiscard]] std::string fingerprint() const;
 
   /// The tile's texels that this layer covers. Errors: kIo.
   [[nodiscard]] Result<Patch> read(const TileId& id, const Cancelled& cancelled = {}) const;
@@ -57,7 +59,6 @@ class MappedImagery {
       : raster_(std::move(raster)), grid_(grid) {}
   [[nodiscard]] Eigen::Vector2d pixel_from_map(double x_map_m, double y_map_m) const;
   [[nodiscard]] Result<Patch> read_warped(const TileId& id, const Cancelled& cancelled) const;
-  Status read_validity(const Cancelled& cancelled);
 
   std::shared_ptr<const ImageryRaster> raster_;
   TileGrid grid_;

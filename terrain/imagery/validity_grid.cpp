@@ -3,6 +3,12 @@
 #include <cmath>
 
 namespace overfly::terrain {
+namespace {
+
+/// @param length_px  at least 1
+int cells_over(int length_px, int cell_px) { return 1 + (length_px - 1) / cell_px; }
+
+}  // namespace
 
 Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster, const Cancelled& cancelled) {
   ValidityGrid grid;
@@ -14,8 +20,8 @@ Result<ValidityGrid> ValidityGrid::read(const ImageryRaster& raster, const Cance
     grid.cell_px_ *= 2;
   }
   const int size = grid.cell_px_;
-  grid.columns_ = (grid.width_px_ + size - 1) / size;
-  grid.rows_ = (grid.height_px_ + size - 1) / size;
+  grid.columns_ = cells_over(grid.width_px_, size);
+  grid.rows_ = cells_over(grid.height_px_, size);
   grid.cells_.resize(static_cast<std::size_t>(grid.columns_) * grid.rows_);
   // Parts of about 4 million texels, independent of the file's width.
   const int piece_columns = std::max(1, (1 << 22) / (size * size));
@@ -63,7 +69,9 @@ std::vector<std::uint8_t> ValidityGrid::to_bytes() const {
   return bytes;
 }
 
-std::optional<ValidityGrid> ValidityGrid::from_bytes(const std::vector<std::uint8_t>& bytes) {
+std::optional<ValidityGrid> ValidityGrid::from_bytes(const std::vector<std::uint8_t>& bytes,
+                                                     int width_px,
+                                                     int height_px) {
   constexpr std::size_t kHead = 20;
   if (bytes.size() < kHead) return std::nullopt;
   ValidityGrid grid;
@@ -74,8 +82,13 @@ std::optional<ValidityGrid> ValidityGrid::from_bytes(const std::vector<std::uint
     for (int i = 0; i < 4; ++i) value |= static_cast<unsigned>(bytes[at++]) << (8 * i);
     *number = static_cast<int>(value);
   }
+  if (grid.cell_px_ < 1 || grid.width_px_ != width_px || grid.height_px_ != height_px ||
+      grid.columns_ != cells_over(width_px, grid.cell_px_) ||
+      grid.rows_ != cells_over(height_px, grid.cell_px_)) {
+    return std::nullopt;
+  }
   const std::size_t cells = static_cast<std::size_t>(grid.columns_) * grid.rows_;
-  if (grid.cell_px_ < 1 || bytes.size() != kHead + cells) return std::nullopt;
+  if (bytes.size() != kHead + cells) return std::nullopt;
   for (; at < bytes.size(); ++at) {
     if (bytes[at] > static_cast<std::uint8_t>(Cell::kAll)) return std::nullopt;
     grid.cells_.push_back(static_cast<Cell>(bytes[at]));

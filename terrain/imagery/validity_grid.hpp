@@ -17,9 +17,12 @@ class ValidityGrid {
   /// Reads the mask once. Errors: kIo; kCancelled.
   static Result<ValidityGrid> read(const ImageryRaster& raster, const Cancelled& cancelled);
 
-  /// Conversion to bytes and back; empty if they are not those of a grid.
+  /// Conversion to bytes and back; empty if they are not those of a grid over a raster of this
+  /// size.
   [[nodiscard]] std::vector<std::uint8_t> to_bytes() const;
-  static std::optional<ValidityGrid> from_bytes(const std::vector<std::uint8_t>& bytes);
+  static std::optional<ValidityGrid> from_bytes(const std::vector<std::uint8_t>& bytes,
+                                                int width_px,
+                                                int height_px);
 
   /// Whether there is any valid texel.
   [[nodiscard]] bool any() const;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 
 #include "core/motion/pose.hpp"
 #include "terrain/place/geoid_table.hpp"
@@ -58,6 +59,9 @@ std::vector<std::string> grids_of(VerticalDatum datum) {
 
 /// The file that PROJ opens for a grid; a file of an older name may replace the requested one.
 std::string file_of_grid(const std::string& grid) {
+  // PROJ uses its default context there, which serves one thread at a time.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   const PJ_GRID_INFO info = proj_grid_info(grid.c_str());
   const std::string file = std::filesystem::path(info.filename).filename().string();
   return file.empty() ? grid : file;

@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace overfly::terrain {
@@ -60,7 +61,6 @@ class SmoothMap {
     SmoothMap map;
     map.domain_ = domain;
     map.degree_ = fitted->degree;
-    map.max_error_ = fitted->max_error;
     for (Eigen::Index i = 0; i < fitted->coefficients.cols(); ++i) {
       map.coefficients_.push_back(fitted->coefficients.col(i));
     }
@@ -93,12 +93,21 @@ class SmoothMap {
   void shift(const Value& offset) { coefficients_.front() += offset; }
 
   [[nodiscard]] const MapRect& domain() const { return domain_; }
-  [[nodiscard]] double max_error() const { return max_error_; }
+
+  /// The values at two places of the domain, as text.
+  [[nodiscard]] std::string fingerprint() const {
+    std::string text;
+    for (const double share : {0.25, 0.75}) {
+      const Value value = (*this)(domain_.x_min + share * (domain_.x_max - domain_.x_min),
+                                  domain_.y_min + share * (domain_.y_max - domain_.y_min));
+      for (int i = 0; i < K; ++i) text += (text.empty() ? "" : " ") + std::to_string(value[i]);
+    }
+    return text;
+  }
 
  private:
   MapRect domain_;
   int degree_ = 0;
-  double max_error_ = 0.0;
   std::vector<Value> coefficients_;
 };
 

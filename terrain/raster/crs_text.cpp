@@ -5,6 +5,7 @@
 #include <cctype>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "core/text/lower_case.hpp"
 #include "core/text/pattern.hpp"
@@ -53,9 +54,22 @@ bool is_number(const std::string& text) {
          text.find("..") == std::string::npos;
 }
 
+/// PROJ takes white space next to ',' and '=' away, so that words belong together.
+bool joins_words(const std::string& text) {
+  const auto joins = [](char c) { return c == ',' || c == '='; };
+  const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if ((joins(text[i - 1]) && is_space(text[i])) || (is_space(text[i - 1]) && joins(text[i]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// True if no `+key=value` of a PROJ text names a location in a file system or a network; `+init`
 /// always reads a file.
 bool is_safe_proj_text(const std::string& text) {
+  if (joins_words(text) && text.find_first_of("/\\~:@") != std::string::npos) return false;
   std::istringstream parts(text);
   for (std::string part; parts >> part;) {
     const std::size_t equals = part.find('=');
@@ -71,22 +85,59 @@ bool is_safe_proj_text(const std::string& text) {
   return true;
 }
 
-/// Checks the parts of WKT that may name a file: extensions with PROJ texts or grids, and the grids
-/// of a bound system.
+/// WKT, cut at its quotes: the strings at odd places, what is between them at even ones, without
+/// spaces. Empty if a string is not a whole item of the text. PROJ joins `"a"b"c"` to one item.
+std::vector<std::string> split_at_quotes(const std::string& text) {
+  std::vector<std::string> pieces(1);
+  for (const char c : text) {
+    const bool between = pieces.size() % 2 == 1;
+    if (c == '"') {
+      pieces.emplace_back();
+    } else if (!between || std::isspace(static_cast<unsigned char>(c)) == 0) {
+      pieces.back() += c;
+    }
+  }
+  const auto is_one_of = [](char c, std::string_view set) { return set.find(c) != set.npos; };
+  for (std::size_t i = 0; i < pieces.size(); i += 2) {
+    const std::string& between = pieces[i];
+    if (between.empty() || (i > 0 && !is_one_of(between.front(), ",])")) ||
+        (i + 1 < pieces.size() && !is_one_of(between.back(), ",[("))) {
+      return {};
+    }
+  }
+  return pieces.size() % 2 == 1 ? pieces : std::vector<std::string>();
+}
+
+/// Whether the pieces from `at` on are `... KEYWORD["NAME","VALUE"` with a VALUE that is a text of
+/// PROJ or names no file.
+bool is_safe_node(const std::vector<std::string>& pieces,
+                  std::size_t at,
+                  std::string_view keyword) {
+  if (at + 4 >= pieces.size() || pieces[at + 2] != ",") return false;
+  const std::string begin = pieces[at].substr(pieces[at].find(keyword));
+  const std::string& value = pieces[at + 3];
+  return begin.size() == keyword.size() + 1 && begin.back() != ',' &&
+         (value.find('=') != std::string::npos || are_bare_names(value));
+}
+
+/// Checks the parts of WKT that may name a file: extensions with PROJ texts or grids, the grids of
+/// a bound system, and methods that are PROJ texts.
 bool is_safe_wkt(const std::string& text) {
+  static constexpr std::array<std::string_view, 2> kKeywords = {"extension", "parameterfile"};
   const std::string all = lower_case(text);
-  for (const std::string_view keyword : {"extension", "parameterfile"}) {
-    for (std::size_t at = all.find(keyword); at != std::string::npos;
-         at = all.find(keyword, at + 1)) {
-      // KEYWORD["NAME","VALUE"]
-      std::size_t quote = at;
-      for (int i = 0; i < 3 && quote != std::string::npos; ++i) quote = all.find('"', quote + 1);
-      if (quote == std::string::npos) return false;
-      const std::size_t end = all.find('"', quote + 1);
-      if (end == std::string::npos) return false;
-      const std::string value = all.substr(quote + 1, end - quote - 1);
-      if (value.find("+proj") != std::string::npos ? !is_safe_proj_text(value)
-                                                   : !are_bare_names(value)) {
+  const auto contains = [&all](std::string_view part) { return all.find(part) != all.npos; };
+  if (!contains("=") && !contains(kKeywords[0]) && !contains(kKeywords[1])) return true;
+  // PROJ also takes the quotes of printed texts, and two quotes within a string for one.
+  if (contains("\"\"") || contains("\xE2\x80\x9C") || contains("\xE2\x80\x9D")) return false;
+  const std::vector<std::string> pieces = split_at_quotes(all);
+  if (pieces.empty()) return false;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i % 2 == 1) {
+      if (pieces[i].find('=') != std::string::npos && !is_safe_proj_text(pieces[i])) return false;
+      continue;
+    }
+    for (const std::string_view keyword : kKeywords) {
+      if (pieces[i].find(keyword) != std::string::npos && !is_safe_node(pieces, i, keyword)) {
         return false;
       }
     }

@@ -10,6 +10,7 @@
 #include "terrain/files/outside_access.hpp"
 #include "terrain/files/regular_files.hpp"
 #include "terrain/files/side_cars.hpp"
+#include "terrain/raster/img_files.hpp"
 #include "terrain/raster/virtual_raster.hpp"
 
 namespace overfly::terrain {
@@ -21,9 +22,12 @@ void initialise_gdal() {
     close_outside_access();
     show_regular_files_alone();
     restrict_virtual_rasters();
+    restrict_img_files();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
     // Listing the directory at every open to find side-cars costs more than it saves.
+    CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
+    // Side-cars in XML (masks, statistics, places) are read, whatever the environment says.
     CPLSetConfigOption("GDAL_PAM_ENABLED", "YES");
     return true;
   }();

@@ -32,9 +32,14 @@ Status check_range(const Georeference& place, int width, int height, const std::
     place.transform.crs_from_pixel((corner & 1) * width, (corner >> 1) * height, x, y);
     const bool geographic = place.crs.IsGeographic() != 0;
     const double unit = geographic ? place.crs.GetAngularUnits() : place.crs.GetLinearUnits();
+    // Columns may begin anywhere in a turn and repeat the first one; posts may lie at the poles,
+    // with their pixels half beyond.
     constexpr double kTolerance = 1e-3;
-    const double limit_x = geographic ? 2.0 * M_PI + kTolerance : 5e7;
-    const double limit_y = geographic ? 0.5 * M_PI + kTolerance : 5e7;
+    const double* g = place.transform.g;
+    const double column = (std::abs(g[1]) + std::abs(g[2])) * unit;
+    const double row = (std::abs(g[4]) + std::abs(g[5])) * unit;
+    const double limit_x = geographic ? 3.0 * M_PI + column + kTolerance : 5e7;
+    const double limit_y = geographic ? 0.5 * M_PI + 0.5 * row + kTolerance : 5e7;
     if (!(std::abs(x * unit) <= limit_x) || !(std::abs(y * unit) <= limit_y)) {
       return Error{ErrorCode::kInvalidArgument,
                    file + ": georeference is invalid: a corner lies at (" + std::to_string(x) +

@@ -172,7 +172,7 @@ Result<Image> read_png(const fs::path& file, std::uint32_t most_side_px) {
   if (image.channels == 3 || palette == nullptr) return read;
   Image coloured(image.width_px, image.height_px, 3);
   for (std::size_t i = 0; i < image.data.size(); ++i) {
-    GDALColorEntry entry;
+    GDALColorEntry entry{};  // black for an index outside the palette
     palette->GetColorEntryAsRGB(image.data[i], &entry);
     coloured.data[3 * i] = static_cast<std::uint8_t>(entry.c1);
     coloured.data[3 * i + 1] = static_cast<std::uint8_t>(entry.c2);

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -134,7 +135,10 @@ class FileLock {
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
   [[nodiscard]] bool usable() const { return descriptor_ >= 0; }
-  [[nodiscard]] bool try_lock() const { return flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
+  /// Locks if no other process does. True too where the file system knows no locks.
+  [[nodiscard]] bool try_lock() const {
+    return flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  }
 
  private:
   int descriptor_;
@@ -170,7 +174,13 @@ Status ensure_world(const fs::path& folder,
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   if (fs::exists(folder / "world.json", failed)) return {};
-  return synthesize_world(folder, options, progress);
+  Status made = synthesize_world(folder, options, progress);
+  // Without locks, another process may have been faster.
+  if (!made && made.error().code != ErrorCode::kCancelled &&
+      fs::exists(folder / "world.json", failed)) {
+    return {};
+  }
+  return made;
 }
 
 fs::path builtin_world_folder(std::uint64_t seed) {

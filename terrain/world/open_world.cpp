@@ -58,39 +58,44 @@ Status prepare(const Rasters& rasters,
   return {};
 }
 
+/// The layers, without the knowledge of where they have texels.
 Result<std::vector<MappedImagery>> map_imagery(const Rasters& rasters,
                                                const WorldLayout& layout,
-                                               const Cancelled& cancelled,
-                                               const WorldDiskCache* cache) {
+                                               const Cancelled& cancelled) {
   std::vector<MappedImagery> layers;
   for (std::size_t i = 0; i < rasters.size(); ++i) {
     if (Status status = go_on(cancelled, rasters[i]->file()); !status) return status.error();
-    const bool aligned = i == 0 && layout.first_aligned;
-    Result<std::vector<std::optional<Turn>>> turns(std::vector<std::optional<Turn>>{std::nullopt});
-    if (!aligned) turns = MappedImagery::turns_over_grid(*rasters[i], layout.plane, layout.grid);
+    if (i == 0 && layout.first_aligned) {
+      layers.push_back(MappedImagery::aligned(rasters[i], layout.grid, layout.pad_x, layout.pad_y));
+      continue;
+    }
+    const auto turns = MappedImagery::turns_over_grid(*rasters[i], layout.plane, layout.grid);
     if (!turns) return turns.error();
     for (const std::optional<Turn>& turn : *turns) {
-      std::optional<ValidityGrid> validity;
-      if (cache != nullptr) {
-        auto kept = cache->validity(static_cast<int>(layers.size()));
-        if (!kept) return kept.error();
-        validity = std::move(*kept);
-      }
-      auto layer =
-          aligned
-              ? MappedImagery::aligned(rasters[i],
-                                       layout.grid,
-                                       layout.pad_x,
-                                       layout.pad_y,
-                                       std::move(validity),
-                                       cancelled)
-              : MappedImagery::warped(
-                    rasters[i], layout.plane, layout.grid, turn, std::move(validity), cancelled);
+      auto layer = MappedImagery::warped(rasters[i], layout.plane, layout.grid, turn);
       if (!layer) return layer.error();
       layers.push_back(std::move(*layer));
     }
   }
   return layers;
+}
+
+Status find_validity(std::vector<MappedImagery>& layers,
+                     const Cancelled& cancelled,
+                     const WorldDiskCache* cache) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const ImageryRaster& raster = layers[i].raster();
+    if (Status status = go_on(cancelled, raster.file()); !status) return status;
+    std::optional<ValidityGrid> known;
+    if (cache != nullptr) {
+      auto kept = cache->validity(static_cast<int>(i), raster.width_px(), raster.height_px());
+      if (!kept) return kept.error();
+      known = std::move(*kept);
+    }
+    Status found = layers[i].find_validity(std::move(known), cancelled);
+    if (!found) return found;
+  }
+  return {};
 }
 
 /// A layer without valid texels is a warning, a world without any is an error.
@@ -205,11 +210,10 @@ Status add_digests(World& world, const Cancelled& cancelled, const WorldDiskCach
 
 /// Looks for a matching cache and records the result in the world.
 std::shared_ptr<const WorldDiskCache> find_cache(const WorldSpec& spec,
-                                                 const WorldLayout& layout,
-                                                 const ElevationModel& elevation,
+                                                 const std::string& fingerprint,
                                                  World& world) {
   WorldDiskCache::Found found = WorldDiskCache::find(spec);
-  if (found.cache && found.cache->header().layout != world_fingerprint(layout.grid, elevation)) {
+  if (found.cache && found.cache->header().layout != fingerprint) {
     found.cache = nullptr;
     found.stale = "PROJ or its grids now georeference these files differently";
   }
@@ -245,13 +249,15 @@ Result<World> open_world(const WorldSpec& spec, const Cancelled& cancelled) {
   if (!sane) return sane.error();
   auto elevation = open_elevation(spec, *layout, world.warnings);
   if (!elevation) return elevation.error();
-  const auto cache = find_cache(spec, *layout, *elevation, world);
+  auto imagery = map_imagery(*rasters, *layout, cancelled);
+  if (!imagery) return imagery.error();
+  const auto cache = find_cache(spec, world_fingerprint(layout->grid, *imagery, *elevation), world);
   if (!cache) {
     const Status prepared = prepare(*rasters, cancelled, world.warnings);
     if (!prepared) return prepared.error();
   }
-  auto imagery = map_imagery(*rasters, *layout, cancelled, cache.get());
-  if (!imagery) return imagery.error();
+  const Status valid = find_validity(*imagery, cancelled, cache.get());
+  if (!valid) return valid.error();
   const Status picture = check_picture(*imagery, world.warnings);
   if (!picture) return picture.error();
   if (elevation->heights() != nullptr) {

@@ -112,7 +112,9 @@ Eigen::Vector2d MapGeodesy::map_near(double east_m, double north_m) const {
   return middle_map_m_ + map_per_world_ * (Eigen::Vector2d(east_m, north_m) - middle_world_m_);
 }
 
-std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevation) {
+std::string world_fingerprint(const TileGrid& grid,
+                              const std::vector<MappedImagery>& imagery,
+                              const ElevationModel& elevation) {
   char text[256];
   std::snprintf(text,
                 sizeof(text),
@@ -123,7 +125,9 @@ std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevat
                 grid.texel_m,
                 grid.left_x_m,
                 grid.top_y_m);
-  return text + elevation.fingerprint();
+  std::string result = text;
+  for (const MappedImagery& layer : imagery) result += layer.fingerprint() + "; ";
+  return result + elevation.fingerprint();
 }
 
 TileCoverage RasterWorld::coverage(const TileId& id) const {

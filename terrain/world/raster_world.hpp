@@ -32,7 +32,6 @@ class MapGeodesy {
   [[nodiscard]] Eigen::Vector2d map_near(double east_m, double north_m) const;
   /// d(map) / d(east, north) at the centre of the domain.
   [[nodiscard]] const Eigen::Matrix2d& map_per_world() const { return map_per_world_; }
-  [[nodiscard]] double max_error_m() const { return ground_->max_error(); }
 
  private:
   /// World coordinates of the point on the ellipsoid and of its upward normal.
@@ -95,7 +94,9 @@ class RasterWorld final : public TileSource {
   std::shared_ptr<const WorldDiskCache> cache_;  ///< null if tiles are read from the files
 };
 
-/// Grid and heights as text: equal for equal places of tiles and posts.
-[[nodiscard]] std::string world_fingerprint(const TileGrid& grid, const ElevationModel& elevation);
+/// Grid, imagery and heights as text: equal for equal places of tiles, texels and posts.
+[[nodiscard]] std::string world_fingerprint(const TileGrid& grid,
+                                            const std::vector<MappedImagery>& imagery,
+                                            const ElevationModel& elevation);
 
 }  // namespace overfly::terrain

@@ -18,8 +18,8 @@ struct WorldFile {
   std::optional<FileIdentity> identity;
 };
 
-/// The present layers' files, their side-cars and the sources of virtual rasters. Files that cannot
-/// be opened are skipped; opening the world reports them.
+/// The layers' files, the sources of virtual rasters, and the side-cars of both, present or not.
+/// What a file that cannot be opened consists of is not listed; opening the world reports it.
 [[nodiscard]] std::vector<WorldFile> world_files(const WorldSpec& spec);
 
 /// The first of the files that was changed, created or removed; empty if all are unchanged.

@@ -1,9 +1,11 @@
 // The small parts of the room: geoid, polynomial maps, digests, picture files, height grids.
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "core/motion/pose.hpp"
 #include "terrain/elevation/height_grid.hpp"
@@ -11,6 +13,7 @@
 #include "terrain/place/geoid.hpp"
 #include "terrain/place/geoid_table.hpp"
 #include "terrain/place/smooth_map.hpp"
+#include "terrain/raster/gdal_messages.hpp"
 #include "terrain/raster/image_file.hpp"
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
@@ -171,6 +174,29 @@ TEST(ImageFile, DeepPngReadsBackExactlyWithSixteenBitSamples) {
   ASSERT_TRUE(write_png(folder.path() / "b.png", Image(2, 2, 1)));
   EXPECT_FALSE(read_png16(folder.path() / "b.png", kMostSidePx));
   EXPECT_FALSE(write_png(folder.path() / "c.png", Image16()));
+}
+
+TEST(ImageFile, IsBlackWhereThePaletteHasNoColour) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "a.png";
+  ASSERT_TRUE(write_png(file, Image(1, 1, 1)));  // registers the drivers
+  GDALDriverManager& drivers = *GetGDALDriverManager();
+  const GDALDatasetUniquePtr memory(
+      drivers.GetDriverByName("MEM")->Create("", 3, 1, 1, GDT_Byte, nullptr));
+  GDALColorTable palette;
+  const GDALColorEntry red{200, 20, 30, 255};
+  palette.SetColorEntry(0, &red);
+  palette.SetColorEntry(1, &red);
+  GDALRasterBand& band = *memory->GetRasterBand(1);
+  ASSERT_EQ(band.SetColorTable(&palette), CE_None);
+  std::uint8_t indices[] = {1, 5, 0};
+  ASSERT_EQ(band.RasterIO(GF_Write, 0, 0, 3, 1, indices, 3, 1, GDT_Byte, 0, 0, nullptr), CE_None);
+  const GdalMessages quiet;
+  GDALClose(drivers.GetDriverByName("PNG")->CreateCopy(
+      file.c_str(), memory.get(), FALSE, nullptr, nullptr, nullptr));
+  const auto read = read_png(file, kMostSidePx);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->data, (std::vector<std::uint8_t>{200, 20, 30, 0, 0, 0, 200, 20, 30}));
 }
 
 TEST(ImageFile, RefusesASizeAboveTheLimit) {

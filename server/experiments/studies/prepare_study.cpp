@@ -131,8 +131,8 @@ class Preparation {
   /// The scenario of a prediction or a hunt, checked; also written as input.
   Result<Scenario> read(const StudyScenario& asks) {
     const ScenarioLibrary& library = runs_.library();
-    Result<Scenario> scenario =
-        asks.document ? library.read(*asks.document) : library.load(asks.name, asks.overrides);
+    Result<Scenario> scenario = asks.document ? library.read_to_fly(*asks.document)
+                                              : library.load_to_fly(asks.name, asks.overrides);
     if (!scenario) return scenario.error();
     if (scenario->is_live()) {
       return bad_study("flight = a live vehicle: must be known before it is flown");

@@ -63,7 +63,7 @@ Result<server::RunInfo> start_document(RunManager& runs,
                                        const json& document,
                                        const std::string& key,
                                        server::StartReport* report) {
-  Result<server::Scenario> scenario = runs.library().read(document);
+  Result<server::Scenario> scenario = runs.library().read_to_fly(document);
   if (!scenario) return scenario.error();
   return runs.start(std::move(*scenario), key, report);
 }

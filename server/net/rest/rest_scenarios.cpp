@@ -96,7 +96,7 @@ HttpResponse check(RunManager* runs, const RouteCall& call) {
                           {"faults", field_errors_of(message)},
                           {"document", nullptr}});
   };
-  auto scenario = runs->library().read(*document);
+  auto scenario = runs->library().read_to_fly(*document);
   if (!scenario) return invalid(scenario.error().message);
   if (const Status start = runs->check_start(*scenario); !start)
     return invalid(start.error().message);

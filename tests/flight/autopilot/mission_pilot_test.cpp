@@ -78,5 +78,25 @@ TEST(MissionPilot, GoesOnWithItsTurnsWhenParametersChange) {
   EXPECT_EQ(pilot.update(flying_at(0, 100), 0.01).energy.up_m, 170.0);
 }
 
+TEST(MissionPilot, CountsNoTurnsOnTheWayToAnotherCircle) {
+  MissionItem circle = item_of(MissionCommand::kLoiter, waypoint(0, 0, 300));
+  circle.radius_m = 0.0;  // that of the parameters
+  circle.turns = 1.0;
+  MissionPilot pilot = pilot_of({circle, item_of(MissionCommand::kReturn)});
+  pilot.set_parameters({.wp_loiter_rad = 100.0});
+  const auto fly_around = [&](double turns) {
+    for (double bearing = 0.0; bearing < turns * 2.0 * kPi; bearing += 0.05) {
+      const FlightState at = flying_at(
+          100.0 * std::sin(bearing), 100.0 * std::cos(bearing), wrap_pi(bearing + 0.5 * kPi));
+      (void)pilot.update(at, 0.25);
+    }
+  };
+  pilot.start(flying_at(0, 100, 0.5 * kPi));
+  fly_around(0.5);
+  pilot.set_parameters({.wp_loiter_rad = 500.0});
+  fly_around(2.0);
+  EXPECT_EQ(pilot.item(), 0U) << "400 m inside of the circle";
+}
+
 }  // namespace
 }  // namespace overfly::autopilot

@@ -104,6 +104,25 @@ TEST_F(MapServiceTest, DrawsTilesAndKeepsThem) {
   EXPECT_EQ(maps.tile("file:none/a.json", id, {}).error().code, ErrorCode::kNotFound);
 }
 
+TEST_F(MapServiceTest, HasAnotherVersionForEveryChangeOfTheWorld) {
+  MapService maps(*runs_);
+  const auto opened = maps.open(file_name(), {}).value()->opened();
+  ASSERT_FALSE(opened->files.empty());
+  const auto version = [](const OpenedWorld& world, const std::string& key) {
+    return MapWorld(std::make_shared<const OpenedWorld>(world), key).version();
+  };
+  const std::string first = version(*opened, "a");
+  EXPECT_EQ(version(*opened, "a"), first);
+  EXPECT_NE(version(*opened, "b"), first) << "another coordinate system or void, for instance";
+  OpenedWorld changed = *opened;
+  terrain::WorldFile& file = changed.files.front();
+  ASSERT_TRUE(file.identity);
+  ++file.identity->changed_ns;
+  EXPECT_NE(version(changed, "a"), first);
+  file.identity.reset();
+  EXPECT_NE(version(changed, "a"), first);
+}
+
 TEST_F(MapServiceTest, MeasuresTheGround) {
   MapService maps(*runs_);
   const auto world = maps.open(file_name(), {});

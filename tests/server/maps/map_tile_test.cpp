@@ -46,7 +46,7 @@ class MapFixture {
     }
     auto opened = std::make_shared<OpenedWorld>();
     opened->world = terrain::open_world(spec).value();
-    world_ = std::make_unique<MapWorld>(opened);
+    world_ = std::make_unique<MapWorld>(opened, "test");
   }
   [[nodiscard]] const MapWorld& world() const { return *world_; }
   [[nodiscard]] std::filesystem::path imagery() const { return folder_.path() / "imagery.tif"; }

@@ -88,8 +88,8 @@ TEST_F(RunManagerTest, OpensOnlyTheLinksThatTheOperatorAllows) {
   ASSERT_TRUE(started.ok()) << started.error().message;
   EXPECT_EQ(wait_for_end(*runs, started->id).status, RunStatus::kFailed);  // nobody listens
   // Another link, or what the vehicle has to do, only as in the scenario's file.
-  EXPECT_TRUE(runs->library().load("live", {{"duration_s", 1}}).ok());
-  const auto arming = runs->library().load("live", {{"flight.mavlink.arm_and_start", true}});
+  EXPECT_TRUE(runs->library().load_to_fly("live", {{"duration_s", 1}}).ok());
+  const auto arming = runs->library().load_to_fly("live", {{"flight.mavlink.arm_and_start", true}});
   EXPECT_EQ(arming.error().code, ErrorCode::kForbidden);
   EXPECT_THAT(arming.error().message,
               HasSubstr("flight.mavlink: must be as in the scenario's file"));
@@ -252,7 +252,7 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   overfly::testing::write_text(root() / "scenarios" / "doors.json", document.dump());
   const auto runs = manager();
   const auto check = [&](const char* text) {
-    return runs->library().load("doors", {parse_override(text).value()});
+    return runs->library().load_to_fly("doors", {parse_override(text).value()});
   };
   EXPECT_TRUE(check("duration_s=1").ok());
   EXPECT_TRUE(check(R"(estimators.0.parameters={"features":1000})").ok());
@@ -264,7 +264,7 @@ TEST_F(RunManagerTest, ClientsMayUseTheCommandsOfScenarioFilesOnly) {
   EXPECT_FALSE(check(R"(estimators.0.command.0="/bin/sh")").ok());
   EXPECT_TRUE(trusting_manager()
                   ->library()
-                  .load("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
+                  .load_to_fly("doors", {parse_override(R"(estimators.0.command=["x"])").value()})
                   .ok());
 }
 

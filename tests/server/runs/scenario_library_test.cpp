@@ -150,14 +150,15 @@ TEST_F(ScenarioLibraryTest, GivesSavedScenariosNoMoreReachThanOverrides) {
   owned["estimators"] = {{{"name", "vo"}, {"type", "process"}, {"command", {"/bin/true"}}}};
   overfly::testing::write_text(root() / "scenarios" / "doors.json", owned.dump());
   const auto runs = saving_manager();
-  EXPECT_TRUE(runs->library().read(owned).ok()) << "as in the owner's file";
+  EXPECT_TRUE(runs->library().read_to_fly(owned).ok()) << "as in the owner's file";
   Json evil = owned;
   evil["estimators"][0]["command"] = {"/bin/sh"};
-  EXPECT_EQ(runs->library().read(evil).error().code, ErrorCode::kForbidden);
+  EXPECT_EQ(runs->library().read_to_fly(evil).error().code, ErrorCode::kForbidden);
   EXPECT_THAT(save(*runs, "evil", evil).error().message, HasSubstr("estimators.0.command"));
   Json live = testing::small_document();
   live["flight"] = {{"mavlink", {{"link", "tcp:127.0.0.1:1"}}}};
-  EXPECT_THAT(runs->library().read(live).error().message, HasSubstr("flight.mavlink"));
+  EXPECT_THAT(runs->library().read_to_fly(live).error().message, HasSubstr("flight.mavlink"));
+  EXPECT_TRUE(runs->library().read(live).ok()) << "to look at it, as at its world";
   // Also where a file got there in another way: each flight is checked.
   fs::create_directories(saved());
   overfly::testing::write_text(saved() / "planted.json", evil.dump());

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 
 #include "tests/terrain/cache/built_world.hpp"
 
@@ -159,6 +160,22 @@ TEST_F(BuiltWorld, IsStillGoodWhenAFileWasOnlyCopied) {
   fs::last_write_time(file, fs::last_write_time(file) + std::chrono::hours(1));
   EXPECT_THAT(opened(spec_).cache, HasSubstr("in use"));
   EXPECT_TRUE(build().was_fresh);
+}
+
+TEST_F(BuildWorld, NoticesAChangeBetweenTheSamplesOfALargeFile) {
+  const fs::path file = folder_.path() / "near.tif";
+  fs::resize_file(file, std::uintmax_t{33} << 20U);  // above 32 MiB only samples are digested
+  const BuildReport first = build();
+  EXPECT_THAT(opened(spec_).cache, HasSubstr("in use"));
+  const auto time = fs::last_write_time(file);
+  {
+    std::fstream between(file, std::ios::in | std::ios::out | std::ios::binary);
+    between.seekp((std::streamoff{1} << 20U) + 100);  // after the first of 32 samples of 1 MiB
+    between.put('x');
+  }
+  fs::last_write_time(file, time + std::chrono::seconds(5));
+  EXPECT_EQ(opened(spec_).cache, "stale: near.tif has another modification time");
+  EXPECT_NE(build().folder, first.folder);
 }
 
 TEST_F(BuiltWorld, NoticesAChangedManifestButNotItsWords) {

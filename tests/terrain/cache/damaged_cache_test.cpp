@@ -1,4 +1,6 @@
 // A damaged cache is reported or repaired, and never gives another picture.
+#include "terrain/cache/block_codec.hpp"
+#include "terrain/cache/chunk_file.hpp"
 #include "tests/terrain/cache/built_world.hpp"
 
 namespace overfly::terrain {
@@ -75,6 +77,34 @@ TEST_F(BuiltWorld, MendsWhatIsDamaged) {
   const World built = opened(spec_);
   expect_same_tiles(files, built);
   expect_same_ground(files, built);
+}
+
+TEST_F(BuiltWorld, DoesNotTrustAMaskOfAnotherRaster) {
+  const fs::path file = cache_ / "validity-0";
+  const std::string whole = testing::read_text(file);
+  const Bytes mask = unpack_bytes(read_piece(file, 0).value()).value();
+  // Cell size, columns, rows, width and height, four bytes each.
+  Bytes swapped = mask;
+  std::swap_ranges(swapped.begin() + 4, swapped.begin() + 8, swapped.begin() + 8);
+  Bytes wider = mask;
+  wider[12] ^= 1U;
+  Bytes higher = mask;
+  higher[16] ^= 1U;
+  for (const Bytes& bent : {swapped, wider, higher}) {
+    ASSERT_TRUE(write_chunk(file, {pack_bytes(bent)}));
+    const auto world = open_world(spec_);
+    ASSERT_FALSE(world.ok());
+    EXPECT_EQ(world.error().message, file.string() + ": is damaged");
+  }
+  testing::write_text(file, whole);
+  EXPECT_TRUE(open_world(spec_).ok());
+}
+
+TEST(BlockCodec, AllocatesNothingForABlockOfAnotherSize) {
+  // As the largest block of heights declares its size, with the method's number behind.
+  EXPECT_FALSE(unpack_heights(Bytes{0xff, 0xff, 0, 1, 2, 3}));
+  HeightGrid small{3, 3, std::vector<float>(9, 1.0F)};
+  EXPECT_FALSE(unpack_heights(pack_heights(small)));
 }
 
 TEST_F(BuiltWorld, DoesNotTrustADamagedTableOfContents) {

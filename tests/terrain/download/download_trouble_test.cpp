@@ -111,6 +111,8 @@ TEST_F(DownloadTrouble, SaysWhatIsWrongWithAnAnswer) {
          return words(
              200, "application/json", R"({"error":{"code":400,"message":"Invalid bbox"}})");
        }},
+      {"the answer is empty (attempt 2 of 2)",
+       [](const HttpRequest&) { return words(200, "image/tiff", ""); }},
       {"HTTP status 403", [](const HttpRequest&) { return words(403, "text/plain", "no"); }},
       {"HTTP status 404", [](const HttpRequest&) { return words(404, "text/plain", "no"); }},
       {"the service answered with text: Sorry",

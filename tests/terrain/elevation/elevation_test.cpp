@@ -1,3 +1,4 @@
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "tests/support/support.hpp"
 #include "tests/support/synthetic_world.hpp"
 #include "tests/terrain/elevation/independent_elevation.hpp"
+#include "tests/terrain/raster_file.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -232,6 +234,59 @@ TEST(Elevation, FillsPostsWithoutDataAndSaysHowMany) {
   EXPECT_DOUBLE_EQ(world->tiles->height_range_m().y(), 50.0);
   ASSERT_EQ(world->warnings.size(), 1U);
   EXPECT_NE(world->warnings[0].find("5 of 10000 posts"), std::string::npos) << world->warnings[0];
+}
+
+TEST(Elevation, WithAVoidInTheManifestIgnoresTheFilesMask) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "masked.tif";
+  testing::RasterFile posts;
+  posts.type = "Float32";
+  posts.transform = {{582000.0, 50.0, 0.0, 4358000.0, 0.0, -50.0}};
+  posts.value = [](int x, int, int) { return x == 20 ? -1.0 : 120.0; };
+  testing::write_raster(file, posts);
+  {
+    const GDALDatasetUniquePtr dataset(
+        GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
+    ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->Fill(0.0), CE_None);
+  }
+  WorldSpec spec;
+  spec.imagery.push_back(
+      write_imagery_at(folder.path() / "picture.tif", "EPSG:32616", 583000.0, 4357000.0));
+  spec.elevation.push_back(elevation_layer(file, VerticalDatum::kEllipsoid));
+  EXPECT_FALSE(open_world(spec).ok()) << "no post has data by the mask";
+  spec.elevation.back().nodata = -1.0;
+  const auto world = open_world(spec);
+  ASSERT_TRUE(world.ok()) << world.error().message;
+  EXPECT_EQ(world->tiles->height_range_m(), Eigen::Vector2d(120.0, 120.0));
+}
+
+TEST(Elevation, OfTheWholeEarthMayBeginAnywhereAndHavePostsAtThePoles) {
+  TemporaryFolder folder;
+  WorldSpec spec;
+  spec.imagery.push_back(
+      write_imagery_at(folder.path() / "picture.tif", "EPSG:32616", 583000.0, 4357000.0));
+  const auto file = folder.path() / "earth.tif";
+  spec.elevation.push_back(elevation_layer(file, VerticalDatum::kEllipsoid));
+  testing::RasterFile posts;
+  posts.type = "Float32";
+  posts.crs = "EPSG:4326";
+  posts.height_px = 361;
+  // The last one repeats its first column.
+  for (const auto& [first_deg, columns] : {std::pair(-180.0, 720), {0.0, 720}, {180.0, 721}}) {
+    posts.width_px = columns;
+    posts.transform = {{first_deg - 0.25, 0.5, 0.0, 90.25, 0.0, -0.5}};
+    // Rises to the east by 10 m a degree from 90 deg W.
+    posts.value = [first_deg = first_deg](int x, int, int) {
+      return 10.0 * (std::remainder(first_deg + 0.5 * x, 360.0) + 90.0);
+    };
+    testing::write_raster(file, posts);
+    const auto world = open_world(spec);
+    ASSERT_TRUE(world.ok()) << world.error().message;
+    const Geodetic& origin = world->tiles->frame().origin();
+    EXPECT_NEAR(origin.alt_ellipsoid_m, 10.0 * (deg_from_rad(origin.lon_rad) + 90.0), 0.05)
+        << first_deg;
+  }
 }
 
 TEST(Elevation, OfSeveralLayersTakesTheFirstThatHasDataWithoutAGap) {

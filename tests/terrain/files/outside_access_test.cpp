@@ -1,4 +1,5 @@
 // No file name makes GDAL use the network, unpack archives, or read outside the folder of the file.
+#include <cpl_conv.h>
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
@@ -216,6 +217,51 @@ TEST_F(OutsideAccess, OfOverviewsThatAreAVirtualRasterIsTheirFolder) {
   EXPECT_EQ(seen("own.tif", true), 99);
   EXPECT_EQ(seen((root() / "secret.tif").string(), false), -1);
   EXPECT_EQ(seen("../secret.tif", true), -1);
+}
+
+/// Replaces a name inside a file by one of equal length.
+void rename_inside(const fs::path& file, const std::string& from, const std::string& to) {
+  std::string bytes = testing::read_text(file);
+  const std::size_t at = bytes.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  ASSERT_EQ(from.size(), to.size());
+  bytes.replace(at, to.size(), to);
+  testing::write_text(file, bytes);
+}
+
+TEST_F(OutsideAccess, OfAnErdasRasterAreFilesWithItsName) {
+  initialise_gdal();
+  RasterFile raster;
+  raster.driver = "HFA";
+  raster.options = {"USE_SPILL=YES"};
+  testing::write_raster(data("largest.img"), raster);
+  ASSERT_TRUE(fs::exists(data("largest.ige")));
+  {
+    const CPLConfigOptionSetter in_rrd("HFA_USE_RRD", "YES", false);
+    const GDALDatasetUniquePtr dataset(
+        GDALDataset::Open(data("largest.img").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    ASSERT_NE(dataset, nullptr);
+    int factor = 2;
+    ASSERT_EQ(dataset->BuildOverviews("AVERAGE", 1, &factor, 0, nullptr, nullptr, nullptr),
+              CE_None);
+  }
+  ASSERT_TRUE(fs::exists(data("largest.rrd")));
+  const auto opening = [&] {
+    const auto opened = open_raster(data("largest.img"));
+    return opened ? "ok" : opened.error().message;
+  };
+  EXPECT_EQ(opening(), "ok");
+  const std::string whole = testing::read_text(data("largest.img"));
+
+  fs::copy_file(data("largest.ige"), root() / "oute.ige");
+  fs::copy_file(data("largest.ige"), data("another.ige"));
+  fs::copy_file(data("largest.rrd"), data("another.rrd"));
+  for (const std::string name : {"../oute.ige", "another.ige", "another.rrd"}) {
+    rename_inside(data("largest.img"), "largest" + name.substr(7), name);
+    EXPECT_THAT(opening(), HasSubstr("consists of a file that is not next to it")) << name;
+    EXPECT_NE(said(vrt(source("largest.img"))), "ok") << name;
+    testing::write_text(data("largest.img"), whole);
+  }
 }
 
 TEST_F(OutsideAccess, OfACoordinateReferenceSystemIsNone) {

@@ -319,6 +319,22 @@ TEST_F(BrokenInput, BehindAVirtualRasterIsNamed) {
             "file has 54259");
 }
 
+TEST_F(BrokenInput, OfAnySizeThatADescriptionDeclaresIsNamed) {
+  const auto said_of = [&](const std::string& width, const std::string& height) {
+    testing::write_text(folder_.path() / "vast.vrt",
+                        "<VRTDataset rasterXSize=\"" + width + "\" rasterYSize=\"" + height +
+                            R"("><SRS>EPSG:32616</SRS>
+<GeoTransform>583000, 0.001, 0, 4357000, 0, -0.001</GeoTransform>
+<VRTRasterBand dataType="Byte" band="1"><NoDataValue>0</NoDataValue></VRTRasterBand>
+</VRTDataset>)");
+    return said(over(folder_.path() / "vast.vrt"));
+  };
+  const std::string limit = " texels: must be at most 1073741824 along a side and 1e13 in all";
+  EXPECT_EQ(said_of("400000000", "400000000"), "error: vast.vrt: 400000000 x 400000000" + limit);
+  EXPECT_EQ(said_of("4000000", "4000000"), "error: vast.vrt: 4000000 x 4000000" + limit);
+  EXPECT_EQ(said_of("2147483647", "1"), "error: vast.vrt: 2147483647 x 1" + limit);
+}
+
 TEST_F(BrokenInput, OfElevationFormatsIsNamedWhenCutShort) {
   OVERFLY_DATA_OR_SKIP(hgt, "terrain/elevation_formats/N44W072.hgt");
   OVERFLY_DATA_OR_SKIP(dem, "terrain/elevation_formats/mtsthelens_after_usgs.dem");

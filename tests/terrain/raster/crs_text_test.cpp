@@ -32,6 +32,8 @@ TEST(CrsText, TakesCodesWktAndProjTexts) {
                                               "+lon_0=-120.5 +x_0=399999.9999984 +y_0=0 "
                                               "+ellps=GRS80 +to_meter=1200/3937 +no_defs"),
                                   std::string("+proj=merc +a=6378137 +b=6378137 +nadgrids=@null"),
+                                  std::string(R"(GEOGCS["an Extension = b",DATUM["d",)"
+                                              R"(SPHEROID["s",6378137,298.2]]])"),
                                   std::string("+proj=longlat +datum=WGS84 "
                                               "+geoidgrids=us_nga_egm96_15.tif +vunits=m"),
                                   wkt_of(32616, "WKT1_GDAL"),
@@ -60,6 +62,8 @@ TEST(CrsText, RefusesWhatNamesAFileOrAnAddress) {
         std::string("+proj=utm +zone=16 +nadgrids=/etc/passwd"),
         std::string("+proj=utm +zone=16 +nadgrids=@/etc/passwd,null"),
         std::string("+proj=utm +zone=16 +nadgrids=../secret.gsb"),
+        std::string("+proj=utm +zone=16 +nadgrids=@x, /etc/passwd"),
+        std::string("+proj=utm +zone=16 +nadgrids = /etc/passwd"),
         std::string("+proj=utm +zone=16 +geoidgrids=http://127.0.0.1:1/a.tif"),
         std::string("+proj=utm +zone=16 +NADGRIDS=~/a.gsb"),
         std::string("+proj=defmodel +model=/etc/passwd"),
@@ -68,6 +72,21 @@ TEST(CrsText, RefusesWhatNamesAFileOrAnAddress) {
         geogcs + R"(UNIT["degree",0.01],Extension [ "PROJ4_GRIDS" , "/etc/passwd" ]])",
         std::string(
             R"(BOUNDCRS[SOURCECRS[x],ABRIDGEDTRANSFORMATION[PARAMETERFILE["g","/etc/x"]]])"),
+        // Printed quotes, doubled ones, none: PROJ reads all of them.
+        geogcs +
+            "EXTENSION[\xE2\x80\x9CPROJ4_GRIDS\xE2\x80\x9D,\"/etc/x\"],AUTHORITY[\"a\",\"b\"]]",
+        geogcs + R"(EXTENSION["a""b","PROJ4_GRIDS","/etc/x"],AUTHORITY["a","b"]])",
+        geogcs + R"(EXTENSION[PROJ4_GRIDS,/etc/x],AUTHORITY["a","b"]])",
+        geogcs + R"(EXTENSION["PROJ4_GRIDS",/etc/x],AUTHORITY["a","b"]])",
+        geogcs + R"(EXTENSION["PROJ4_GRIDS","a"/etc/x"b"],AUTHORITY["a","b"]])",
+        geogcs + R"(EXTENSION["PROJ4_GRIDS","/etc/x)",
+        // A method may be a PROJ text; strings that touch other text are one.
+        std::string(R"(BOUNDCRS[SOURCECRS[x],ABRIDGEDTRANSFORMATION[METHOD[)"
+                    R"("PROJ-based operation method: proj=vgridshift grids="/etc/x" "]]])"),
+        std::string(R"(BOUNDCRS[SOURCECRS[x],ABRIDGEDTRANSFORMATION[METHOD[)"
+                    R"("PROJ-based operation method: proj=vgridshift grids=/etc/x"]]])"),
+        std::string(R"(BOUNDCRS[SOURCECRS[x],ABRIDGEDTRANSFORMATION[METHOD[)"
+                    R"("PROJ tinshift file=/etc/x"]]])"),
         std::string("{\"type\": \"GeographicCRS\"}"),
         std::string("<gml:CRS/>"),
         std::string("EPSG:32616") + '\0' + "x",

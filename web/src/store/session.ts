@@ -98,9 +98,12 @@ export class Session implements StreamListener {
       this.pending = { t_ns: t_ns ?? before.t_ns, settings: settings ?? before.settings };
       return;
     }
-    const now = this.state.clock ?? kUsualClock;
+    const { clock } = this.state;
+    const now = clock ?? kUsualClock;
     for (const command of settingCommands(settings ?? now, now)) this.command(command);
-    if (t_ns !== null) this.command({ type: 'seek', t_ns });
+    if (t_ns === null) return;
+    this.command({ type: 'seek', t_ns });
+    if (clock?.playing === true) this.command({ type: 'pause' });
   }
 
   /** Shows a run together with those that are watched. */

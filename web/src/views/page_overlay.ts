@@ -12,6 +12,9 @@ export interface PageOptions {
   load: (context: Context) => Promise<View>;
 }
 
+/** z-index below that of the other overlays. */
+const kUnderAnotherPage = '39';
+
 export class PageOverlay implements View {
   readonly root: HTMLElement;
   private page: View | null = null;
@@ -47,6 +50,11 @@ export class PageOverlay implements View {
   private uncover(): void {
     this.before = document.activeElement;
     this.root.hidden = false;
+    // Over the pages that are open already.
+    for (const other of this.root.parentElement?.querySelectorAll<HTMLElement>('.log-overlay') ??
+      []) {
+      other.style.zIndex = other === this.root ? '' : kUnderAnotherPage;
+    }
     this.disableBehind();
   }
 

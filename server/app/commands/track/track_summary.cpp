@@ -57,7 +57,7 @@ std::string states_text(const server::Dataset& dataset,
   }
   text += count_text("unanswered", tracked.unanswered);
   text += count_text("hash_mismatches", tracked.hash_mismatches);
-  if (figures.crash) text += "CRASHED: " + *figures.crash + "\n";
+  if (figures.crash) text += (figures.hung ? "TIMEOUT: " : "CRASHED: ") + *figures.crash + "\n";
   return text;
 }
 
