@@ -16,17 +16,18 @@ RUN scripts/install-packages run \
  && apt-get install -y -qq --no-install-recommends curl tini $(cat runtime-packages.txt) \
  && rm -rf /var/lib/apt/lists/* \
  && useradd --create-home --uid 1000 overfly \
- && install -d -o overfly -g overfly /data /data/runs /data/cache /data/uploads /data/sweeps
+ && install -d -o overfly -g overfly /data /data/runs /data/cache /data/uploads /data/sweeps \
+      /data/studies /data/scenarios
 COPY --from=build /opt/overfly/build/release/overfly build/release/overfly
 COPY --from=build /opt/overfly/web/dist web/dist
 COPY scenarios scenarios
 USER overfly
 ENV OVERFLY_CACHE=/data/cache
-VOLUME ["/data/runs", "/data/cache", "/data/uploads", "/data/sweeps"]
+VOLUME ["/data/runs", "/data/cache", "/data/uploads", "/data/sweeps", "/data/studies", "/data/scenarios"]
 EXPOSE 8480
 HEALTHCHECK --interval=30s --timeout=5s --start-period=10s \
   CMD printf 'header = "Authorization: Bearer %s"' "$(cat /data/token)" \
     | curl -fsS -K - http://127.0.0.1:8480/api/v1/health || exit 1
 # The first process of a container must reap the orphans of estimators.
 ENTRYPOINT ["tini", "-s", "--", "/opt/overfly/build/release/overfly"]
-CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--sweeps", "/data/sweeps", "--studies", "/data/studies", "--uploads", "/data/uploads", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]
+CMD ["serve", "--address", "0.0.0.0", "--token-file", "/data/token", "--runs", "/data/runs", "--sweeps", "/data/sweeps", "--studies", "/data/studies", "--uploads", "/data/uploads", "--saved-scenarios", "/data/scenarios", "--scenarios", "/opt/overfly/scenarios", "--web", "/opt/overfly/web/dist"]

@@ -31,6 +31,8 @@ void BootClock::follow(std::int64_t step_ns) {
     since_jump_ = 1;
     least_step_ns_ = step_ns;
     right_until_ns_.reset();
+  } else {
+    usual_step_ns_ = std::min(usual_step_ns_, std::max(step_ns, kMaxBackNs));
   }
 }
 

@@ -48,6 +48,9 @@ error_code Listener::open(const tcp::endpoint& endpoint) {
   error_code error;
   acceptor_.open(endpoint.protocol(), error);
   if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+  // Connections inherit it.
+  const int send_buffer_bytes = context_->options.limits.send_buffer_bytes;
+  if (!error) acceptor_.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), error);
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
   return error;

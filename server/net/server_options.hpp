@@ -27,7 +27,9 @@ struct ServerLimits {
   std::int64_t upload_grace_ms = 60'000;
   ConnectionLimits connections;
   server::UploadLimits uploads;  ///< of flight logs
-  /// Kernel send buffer of a WebSocket. Small, because pictures that wait in it become outdated.
+  /// Kernel send buffer of a connection. Small: pictures for a viewer that wait in it become
+  /// outdated, and with a large one a slow client seems to take nothing of an answer for a long
+  /// time.
   int send_buffer_bytes = 256 << 10;
 };
 

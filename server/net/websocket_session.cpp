@@ -174,7 +174,6 @@ void WebSocketSession::run(const http::request<http::string_body>& upgrade) {
   error_code ignored;
   auto& socket = beast::get_lowest_layer(ws_).socket();
   socket.set_option(tcp::no_delay(true), ignored);
-  socket.set_option(asio::socket_base::send_buffer_size(limits.send_buffer_bytes), ignored);
   beast::get_lowest_layer(ws_).expires_never();
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = std::chrono::milliseconds(limits.idle_ms);

@@ -185,17 +185,19 @@ std::string words_of(const HttpReply& reply) {
 }
 
 Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply& reply) {
-  if (reply.status == 204 && !chunk.may_be_absent) {
+  const bool words = reply.content_type.find("json") != std::string::npos ||
+                     reply.content_type.find("html") != std::string::npos ||
+                     reply.content_type.find("xml") != std::string::npos ||
+                     reply.content_type.find("text/plain") != std::string::npos;
+  // An empty answer of a service under load is not a tile that does not exist.
+  const bool under_load = words || reply.retry_after_s;
+  if (reply.status == 204 && (!chunk.may_be_absent || under_load)) {
     return {Kind::kTryAgain, "the answer is empty"};
   }
   if (reply.status != 200) {
     const std::string status = "HTTP status " + std::to_string(reply.status);
     return {chunk.may_be_absent ? Kind::kAbsent : Kind::kFailed, status};
   }
-  const bool words = reply.content_type.find("json") != std::string::npos ||
-                     reply.content_type.find("html") != std::string::npos ||
-                     reply.content_type.find("xml") != std::string::npos ||
-                     reply.content_type.find("text/plain") != std::string::npos;
   if (words || reply.body[0] == '{' || reply.body[0] == '<') {
     // Services under load report temporary errors as text as well as by status.
     return {Kind::kTryAgain, "the service answered with text: " + words_of(reply)};

@@ -21,10 +21,10 @@ class SideCars {
                              const SourcePolicy& sources);
   /// A warning for each existing one that is not a regular file: GDAL does not see it.
   [[nodiscard]] std::vector<std::string> doubts(const std::filesystem::path& file);
-
- private:
+  /// The existing ones. Each folder is listed once.
   [[nodiscard]] std::vector<std::filesystem::path> of(const std::filesystem::path& file);
 
+ private:
   /// File names by their lower-case form, for the folders listed so far.
   std::map<std::filesystem::path, std::multimap<std::string, std::string>> folders_;
 };

@@ -25,8 +25,6 @@ void initialise_gdal() {
     restrict_img_files();
     constexpr GIntBig kBlockCacheBytes = GIntBig{128} << 20;
     GDALSetCacheMax64(kBlockCacheBytes);
-    // Listing the directory at every open to find side-cars costs more than it saves.
-    CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
     // Side-cars in XML (masks, statistics, places) are read, whatever the environment says.
     CPLSetConfigOption("GDAL_PAM_ENABLED", "YES");
     return true;

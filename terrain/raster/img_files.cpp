@@ -20,6 +20,7 @@ GDALDataset* (*open_img)(GDALOpenInfo*) = nullptr;
 bool is_part_of(const fs::path& raster, const fs::path& file) {
   const fs::path own = fs::absolute(raster).lexically_normal();
   const fs::path other = fs::absolute(file).lexically_normal();
+  if (other == own) return true;
   const std::string begin = lower_case(own.stem().string()) + ".";
   return other.parent_path() == own.parent_path() &&
          lower_case(other.filename().string()).starts_with(begin);

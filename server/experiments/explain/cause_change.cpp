@@ -16,8 +16,8 @@ constexpr double kStartShift_s = 0.7;
 constexpr std::int64_t kMostFeatures = 20'000;  // limit of the native estimator
 
 /// The numbers of features of estimators, by the names of their authors.
-constexpr std::array<const char*, 4> kFeatureParameters = {
-    "features", "nFeatures", "ORBextractor.nFeatures", "max_fts"};
+constexpr std::array<const char*, 5> kFeatureParameters = {
+    "features", "nFeatures", "ORBextractor.nFeatures", "max_fts", "maxFts"};
 constexpr std::int64_t kFeaturesOfNative = 2000;
 
 Json& estimator_of(Json& document) { return document.at("estimators").at(0); }

@@ -12,9 +12,6 @@ export interface PageOptions {
   load: (context: Context) => Promise<View>;
 }
 
-/** z-index below that of the other overlays. */
-const kUnderAnotherPage = '39';
-
 export class PageOverlay implements View {
   readonly root: HTMLElement;
   private page: View | null = null;
@@ -50,11 +47,10 @@ export class PageOverlay implements View {
   private uncover(): void {
     this.before = document.activeElement;
     this.root.hidden = false;
-    // Over the pages that are open already.
-    for (const other of this.root.parentElement?.querySelectorAll<HTMLElement>('.log-overlay') ??
-      []) {
-      other.style.zIndex = other === this.root ? '' : kUnderAnotherPage;
-    }
+    // Over the pages that are open already: the last one of the document is on top.
+    const pages = this.root.parentElement?.querySelectorAll(':scope > .log-overlay') ?? [];
+    const last = pages[pages.length - 1];
+    if (last !== undefined && last !== this.root) last.after(this.root);
     this.disableBehind();
   }
 
