@@ -99,7 +99,8 @@ TEST_F(WindowErrorsOfAFlight, CountTheDetourOfAGap) {
   pairs.resize(380);
   const auto errors = relative_errors_along(pairs);
   ASSERT_TRUE(errors[370]);
-  // Of the 100 m 27.4 are the straight way over the gap, and 12.6 were flown before it.
+  // Of the 100 m 60 are the detour, 28.8 the 21 steps over the gap, and the rest was flown before
+  // it.
   std::vector<std::optional<PosePair>> last(pairs.begin() + 340, pairs.end());
   EXPECT_TRUE(relative_errors_along(last)[30]);
   last.erase(last.begin(), last.begin() + 2);

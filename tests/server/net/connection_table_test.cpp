@@ -175,6 +175,18 @@ TEST(Connections, ThatReceiveSlowlyReceiveEverything) {
   EXPECT_GT(slow.read_to_end(std::chrono::milliseconds(2)), kBytes);
 }
 
+TEST(Connections, ThatReceiveNothingAreClosed) {
+  ServerLimits limits;
+  limits.idle_ms = 300;
+  TestServer server(limits);
+  constexpr std::size_t kBytes = std::size_t{32} << 20U;
+  overfly::testing::write_text(server.folder() / "web" / "large.js", std::string(kBytes, 'x'));
+  RawConnection asleep(server.port());
+  asleep.send("GET /large.js HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_LT(asleep.read_to_end(), kBytes);
+}
+
 TEST(Connections, ThatSendTheirBodySlowlyKeepNobodyOut) {
   ServerLimits limits;
   limits.connections = {8, 2, 8};
