@@ -346,6 +346,9 @@ TEST_F(TrackDataset, MatchesATruthWithoutTimesByItsLines) {
   const auto& aligned = score.alignments.at(evaluation::AlignmentMode::kSim3);
   EXPECT_EQ(aligned.matched, 6);
   EXPECT_NEAR(aligned.S_world_vo.scale, 2.0, 1e-9);
+  // At the times of the images: divergence and the first 5 s are judged by them.
+  ASSERT_EQ(score.matched_t_ns.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(score.matched_t_ns[i], dataset_.images[i].t_ns);
 }
 
 }  // namespace
