@@ -302,6 +302,8 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
   });
 
   step('stops a running flight in real time and deletes it', async () => {
+    // Long enough to fly until it is stopped, on a busy machine too.
+    await dashboard.field('duration_s').fill('120');
     await dashboard.field('pacing').selectOption('real_time');
     await dashboard.chooseEstimators();
     const second = await dashboard.launch();

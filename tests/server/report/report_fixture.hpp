@@ -53,7 +53,9 @@ inline void add_estimator(ReportRun& run,
     sample.state = state_of(frame.frame);
     sample.T_vo_camera = frame.T_world_camera;
     sample.T_vo_camera.translation.z() += 1.0;
-    recorded.records.push_back({sample, {}, false, "", {}});
+    EstimateRecord record;
+    record.sample = sample;
+    recorded.records.push_back(record);
     const bool tracks = sample.state == TrackingState::kTracking;
     estimate.answers.push_back({sample.t_ns,
                                 sample.state,
