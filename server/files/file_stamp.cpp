@@ -33,4 +33,15 @@ bool FileStamp::settled(std::int64_t now_ns) const {
   return !exists || changed_ns < now_ns - kTickNs || changed_ns > now_ns + kTickNs;
 }
 
+std::string content_key(const std::vector<std::filesystem::path>& files) {
+  std::string key;
+  for (const std::filesystem::path& file : files) {
+    const FileStamp stamp = FileStamp::of(file);
+    key += file.string() + '\n' + std::to_string(stamp.inode) + ' ' +
+           std::to_string(stamp.size_bytes) + ' ' + std::to_string(stamp.modified_ns) + ' ' +
+           std::to_string(stamp.changed_ns) + '\n';
+  }
+  return key;
+}
+
 }  // namespace overfly::server

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace overfly::server {
 
@@ -23,5 +24,8 @@ struct FileStamp {
   [[nodiscard]] bool settled(std::int64_t now_ns) const;
   [[nodiscard]] bool operator==(const FileStamp&) const = default;
 };
+
+/// Identifies the contents of files without reading them: paths and stamps.
+[[nodiscard]] std::string content_key(const std::vector<std::filesystem::path>& files);
 
 }  // namespace overfly::server

@@ -18,18 +18,6 @@ namespace fs = std::filesystem;
 namespace logs = flight::logs;
 using Json = nlohmann::json;
 
-/// Identifies the content of a log's files without reading them.
-std::string content_key(const std::vector<fs::path>& files) {
-  std::string key;
-  for (const fs::path& file : files) {
-    const FileStamp stamp = FileStamp::of(file);
-    key += file.string() + '\n' + std::to_string(stamp.inode) + ' ' +
-           std::to_string(stamp.size_bytes) + ' ' + std::to_string(stamp.modified_ns) + ' ' +
-           std::to_string(stamp.changed_ns) + '\n';
-  }
-  return key;
-}
-
 std::string limit_text(const std::optional<std::int64_t>& t_ns) {
   return t_ns ? std::to_string(*t_ns) : "-";
 }

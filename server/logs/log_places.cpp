@@ -21,6 +21,11 @@ bool may_be_log(const std::string& name) {
   return mapping || has_log_extension(name);
 }
 
+std::string format_of_log(const fs::path& file) {
+  const auto format = flight::logs::detect_format(file);
+  return format ? flight::logs::to_string(*format) : "";
+}
+
 }  // namespace
 
 bool has_log_extension(const std::string& name) {
@@ -38,26 +43,14 @@ std::string log_extensions_text() {
   return text;
 }
 
-std::string LogPlaces::format_of(const fs::path& file, const FileStamp& stamp) {
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = known_.find(file);
-    if (known != known_.end() && known->second.stamp == stamp) return known->second.format;
-  }
-  const auto format = flight::logs::detect_format(file);
-  std::string text = format ? flight::logs::to_string(*format) : "";
-  const std::lock_guard lock(mutex_);
-  if (known_.size() >= kMaxVisitedFiles) known_.clear();
-  known_[file] = {stamp, text};
-  return text;
-}
+LogPlaces::LogPlaces() : formats_(format_of_log) {}
 
 LogList LogPlaces::list(const ServedFolders& folders) {
   LogList list;
   const auto take = [&](const DataFile& file) {
     if (list.logs.size() >= kMaxLogs) return false;
     const FileStamp stamp = FileStamp::of(file.path);
-    std::string format = format_of(file.path, stamp);
+    std::string format = formats_.of(file.path, stamp);
     if (format.empty()) return true;
     list.logs.push_back({file.name,
                          file.path,

@@ -4,14 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 #include "server/files/data_files.hpp"
-#include "server/files/file_stamp.hpp"
+#include "server/logs/known_formats.hpp"
 
 namespace overfly::server {
 
@@ -39,6 +37,8 @@ inline constexpr std::size_t kMaxLogs = 2'000;  ///< in a list
 /// Finds logs. Remembers the formats of files that have not changed. Thread-safe.
 class LogPlaces {
  public:
+  LogPlaces();
+
   /// All logs: files with an extension of logs, and mappings of CSV files (.json), whose first
   /// bytes have a known format. Hidden files and folders, and links to folders, are left out.
   [[nodiscard]] LogList list(const ServedFolders& folders);
@@ -48,14 +48,7 @@ class LogPlaces {
                                                           const std::string& name);
 
  private:
-  struct Known {
-    FileStamp stamp;
-    std::string format;  ///< empty: not a log
-  };
-  [[nodiscard]] std::string format_of(const std::filesystem::path& file, const FileStamp& stamp);
-
-  std::mutex mutex_;
-  std::map<std::filesystem::path, Known> known_;
+  KnownFormats formats_;
 };
 
 }  // namespace overfly::server

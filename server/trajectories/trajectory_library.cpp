@@ -10,6 +10,7 @@
 #include "core/text/shown_path.hpp"
 #include "core/time.hpp"
 #include "server/files/data_files.hpp"
+#include "server/files/file_stamp.hpp"
 #include "server/trajectories/run_trajectory.hpp"
 #include "server/trajectories/trajectory_tables.hpp"
 
@@ -33,11 +34,9 @@ bool has_trajectory_extension(const std::string& name) {
 /// The times file that belongs to a KITTI file, if there is one.
 fs::path times_file_of(const fs::path& file) { return file.parent_path() / "times.txt"; }
 
-std::string stamp_text(const fs::path& file) {
-  const FileStamp stamp = FileStamp::of(file);
-  return file.string() + '\n' + std::to_string(stamp.inode) + ' ' +
-         std::to_string(stamp.size_bytes) + ' ' + std::to_string(stamp.modified_ns) + ' ' +
-         std::to_string(stamp.changed_ns) + '\n';
+std::string format_of_trajectory(const fs::path& file) {
+  const auto format = detect_trajectory(file);
+  return format ? to_string(*format) : "";
 }
 
 Json list_entry(const DataFile& file, const std::string& format, std::int64_t size_bytes) {
@@ -91,28 +90,14 @@ const UploadKind& trajectory_upload_kind() {
 
 TrajectoryLibrary::TrajectoryLibrary(
     LogLibrary& logs, std::function<Result<fs::path>(const std::string& id)> run_folder)
-    : logs_(logs), run_folder_(std::move(run_folder)) {}
-
-std::string TrajectoryLibrary::format_of(const fs::path& file, const FileStamp& stamp) {
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = known_.find(file);
-    if (known != known_.end() && known->second.stamp == stamp) return known->second.format;
-  }
-  const auto format = detect_trajectory(file);
-  std::string text = format ? to_string(*format) : "";
-  const std::lock_guard lock(mutex_);
-  if (known_.size() >= kMaxVisitedFiles) known_.clear();
-  known_[file] = {stamp, text};
-  return text;
-}
+    : logs_(logs), run_folder_(std::move(run_folder)), formats_(format_of_trajectory) {}
 
 Json TrajectoryLibrary::list() {
   std::vector<Json> entries;
   const auto take = [&](const DataFile& file) {
     if (entries.size() >= kMaxTrajectories) return false;
     const FileStamp stamp = FileStamp::of(file.path);
-    const std::string format = format_of(file.path, stamp);
+    const std::string format = formats_.of(file.path, stamp);
     if (!format.empty()) entries.push_back(list_entry(file, format, stamp.size_bytes));
     return true;
   };
@@ -138,7 +123,9 @@ Result<TrajectoryLibrary::Read> TrajectoryLibrary::read_file(const std::string& 
     return Error{ErrorCode::kUnreadable,
                  reference + ": times.txt next to it is no regular file inside the data folders"};
   }
-  const std::string key = stamp_text(*path) + (timed ? stamp_text(times) : "");
+  std::vector<fs::path> files = {*path};
+  if (timed) files.push_back(times);
+  const std::string key = content_key(files);
   if (Read known = read_.find(key)) return known;
   Result<TrajectoryFile> file = read_trajectory(*path, kServedTrajectoryLimits, cancel);
   const auto shown = [&](const std::string& message) {
@@ -259,7 +246,7 @@ Result<Json> TrajectoryLibrary::evaluate(const EvaluationRequest& request,
 Json TrajectoryLibrary::entry_of(const fs::path& upload) {
   const FileStamp stamp = FileStamp::of(upload);
   return list_entry({std::string(kUploadsLabel) + "/" + upload.filename().string(), upload, true},
-                    format_of(upload, stamp),
+                    formats_.of(upload, stamp),
                     stamp.size_bytes);
 }
 

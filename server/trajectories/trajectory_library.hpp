@@ -6,17 +6,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/files/file_stamp.hpp"
 #include "server/files/recent_values.hpp"
+#include "server/logs/known_formats.hpp"
 #include "server/logs/log_library.hpp"
 #include "server/logs/log_uploads.hpp"
 #include "server/scoring/file_score.hpp"
@@ -72,11 +70,6 @@ class TrajectoryLibrary {
 
  private:
   using Read = std::shared_ptr<const ServedTrajectory>;
-  struct Known {
-    FileStamp stamp;
-    std::string format;  ///< empty: not a trajectory
-  };
-  [[nodiscard]] std::string format_of(const std::filesystem::path& file, const FileStamp& stamp);
   [[nodiscard]] Result<Read> read_file(const std::string& name,
                                        const std::string& reference,
                                        const std::atomic<bool>* cancel);
@@ -88,8 +81,7 @@ class TrajectoryLibrary {
 
   LogLibrary& logs_;
   std::function<Result<std::filesystem::path>(const std::string& id)> run_folder_;
-  std::mutex mutex_;
-  std::map<std::filesystem::path, Known> known_;
+  KnownFormats formats_;
   RecentValues<ServedTrajectory> read_{6};
 };
 

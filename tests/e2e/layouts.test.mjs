@@ -283,6 +283,27 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     await chooseLayout('fly');
   });
 
+  step('brings a page to the front, also one that is open below another', async () => {
+    const open = async (words, panel) => {
+      await page.keyboard.press('Control+k');
+      await page.locator('#palette-input').fill(words);
+      await page.keyboard.press('Enter');
+      await dashboard.until(
+        (name) =>
+          document.elementFromPoint(innerWidth / 2, innerHeight / 2)?.closest('.log-overlay')
+            ?.dataset.panel === name,
+        panel,
+      );
+    };
+    await open('calibrate a camera', 'calibration');
+    await open('score trajectories', 'scoring');
+    await open('calibrate a camera', 'calibration');
+    await page.keyboard.press('Escape');
+    await dashboard.until(() =>
+      [...document.querySelectorAll('.log-overlay')].every(({ hidden }) => hidden),
+    );
+  });
+
   step('follows the theme of the system, and the choice of the viewer', async () => {
     const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     await page.emulateMedia({ colorScheme: 'dark' });

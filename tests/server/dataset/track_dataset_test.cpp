@@ -156,6 +156,22 @@ TEST_F(TrackDataset, TakesACrashForAResultAndARefusalForAnError) {
   EXPECT_THAT(refused.error().message, HasSubstr("times.txt:1: no colour"));
 }
 
+TEST_F(TrackDataset, TellsAnEstimatorThatNoLongerAnswersFromOneThatEnded) {
+  const auto hangs = [](const VoFrame& frame, VoEstimate estimate) -> Result<VoEstimate> {
+    if (frame.index == 3) return Error{ErrorCode::kTimeout, "no answer for 60 s"};
+    return estimate;
+  };
+  const TrackedDataset result = tracked(hangs);
+  ASSERT_EQ(result.records.size(), 4U);
+  EXPECT_TRUE(result.records.back().hung);
+  const TrackFigures figures = figures_of(result);
+  EXPECT_EQ(figures.crash, "no answer for 60 s");
+  EXPECT_TRUE(figures.hung);
+  const evaluation::Score score = score_of(dataset_, result, {}, true, std::nullopt);
+  EXPECT_EQ(score.outcome, evaluation::Outcome::kTimeout);
+  EXPECT_EQ(score.outcome_time_s, 11.5);
+}
+
 TEST_F(TrackDataset, TakesAPoseThatIsNoneForALostFrame) {
   std::vector<std::string> warnings;
   TrackOptions options;

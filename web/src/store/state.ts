@@ -112,6 +112,8 @@ export class State {
   missionPage: MissionPage = initialMissionPage();
   sweepPage: SweepPage = initialSweepPage();
   studyPage: StudyPage = initialStudyPage();
+  /** The page that was opened last. */
+  frontPage: { open: boolean } | null = null;
 
   /** The pages over the dashboard, which cover it while they are open. */
   get pages(): readonly { open: boolean }[] {
@@ -127,6 +129,11 @@ export class State {
   }
   get covered(): boolean {
     return this.pages.some(({ open }) => open);
+  }
+  /** Opens a page over the others, also if it is open below them. */
+  openPage(page: { open: boolean }): void {
+    page.open = true;
+    this.frontPage = page;
   }
 
   // ---- the main run ----------------------------------------------------------------------------

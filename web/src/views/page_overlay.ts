@@ -35,8 +35,11 @@ export class PageOverlay implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     const { topic, page } = this.options;
-    const { open } = page(this.context.store.state);
-    const opens = changed.has(topic) && open && this.root.hidden;
+    const { state } = this.context.store;
+    const shown = page(state);
+    const { open } = shown;
+    const rises = this.root.hidden || (state.frontPage === shown && this.isBehind());
+    const opens = changed.has(topic) && open && rises;
     if (opens) this.uncover();
     if (changed.has(topic) && !open && !this.root.hidden) this.leave();
     if (this.page !== null) this.page.update(changed);
@@ -47,11 +50,19 @@ export class PageOverlay implements View {
   private uncover(): void {
     this.before = document.activeElement;
     this.root.hidden = false;
-    // Over the pages that are open already: the last one of the document is on top.
-    const pages = this.root.parentElement?.querySelectorAll(':scope > .log-overlay') ?? [];
-    const last = pages[pages.length - 1];
-    if (last !== undefined && last !== this.root) last.after(this.root);
+    // Over the pages that are open already.
+    if (this.isBehind()) this.frontmost()?.after(this.root);
     this.disableBehind();
+  }
+
+  /** The page that is on top if it is open: the last one of the document. */
+  private frontmost(): Element | undefined {
+    const pages = this.root.parentElement?.querySelectorAll(':scope > .log-overlay') ?? [];
+    return pages[pages.length - 1];
+  }
+
+  private isBehind(): boolean {
+    return this.frontmost() !== this.root;
   }
 
   private leave(): void {

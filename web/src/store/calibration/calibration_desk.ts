@@ -50,7 +50,7 @@ export class CalibrationDesk {
 
   async open(): Promise<void> {
     const { page } = this;
-    page.open = true;
+    this.store.state.openPage(page);
     const { scenarioName } = this.store.state;
     if (page.form.names.scenario === '' && scenarioName !== null) {
       page.form.names.scenario = scenarioName;

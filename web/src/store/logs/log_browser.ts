@@ -78,7 +78,7 @@ export class LogBrowser {
 
   async open(): Promise<void> {
     const { page } = this;
-    page.open = true;
+    this.store.state.openPage(page);
     // A world that was not there may have been made meanwhile.
     for (const [name, world] of page.worlds) if (world === null) page.worlds.delete(name);
     const { scenarioName, scenarios } = this.store.state;

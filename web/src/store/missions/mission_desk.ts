@@ -56,7 +56,7 @@ export class MissionDesk extends MissionEditor {
   }
 
   async open(): Promise<void> {
-    this.page.open = true;
+    this.store.state.openPage(this.page);
     this.changed();
     await this.worlds.read();
     // A mission may have been chosen meanwhile.

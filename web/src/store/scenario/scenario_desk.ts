@@ -46,7 +46,8 @@ export class ScenarioDesk {
   async openEditor(): Promise<void> {
     try {
       await this.readSchema();
-      Object.assign(this.editor, { open: true, saveError: '', replaces: null });
+      Object.assign(this.editor, { saveError: '', replaces: null });
+      this.store.state.openPage(this.editor);
     } catch (error) {
       this.notices.error(errorText(error));
     }

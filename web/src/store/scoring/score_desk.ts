@@ -41,7 +41,7 @@ export class ScoreDesk {
   ) {}
 
   async open(): Promise<void> {
-    this.page.open = true;
+    this.store.state.openPage(this.page);
     this.changed();
     // What was chosen when the page was closed is not scored yet.
     const scoring = this.scoring.signal.aborted ? this.score() : null;

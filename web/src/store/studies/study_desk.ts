@@ -35,7 +35,7 @@ export class StudyDesk {
   }
 
   async open(): Promise<void> {
-    this.page.open = true;
+    this.store.state.openPage(this.page);
     this.changed();
     this.opening += 1;
     await this.poll(this.opening);

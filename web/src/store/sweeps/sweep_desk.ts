@@ -34,7 +34,7 @@ export class SweepDesk {
   }
 
   async open(): Promise<void> {
-    this.page.open = true;
+    this.store.state.openPage(this.page);
     this.changed();
     this.opening += 1;
     await this.poll(this.opening);
