@@ -85,6 +85,18 @@ Error no_overlap(const Trajectory& truth,
 
 }  // namespace
 
+const char* to_string(Association association) {
+  switch (association) {
+    case Association::kInterpolate:
+      return "interpolate";
+    case Association::kNearest:
+      return "nearest";
+    case Association::kIndex:
+      return "index";
+  }
+  return "";
+}
+
 std::optional<FrameTruth> truth_of(const Trajectory& truth,
                                    const EstimateSample& sample,
                                    const Options& options) {

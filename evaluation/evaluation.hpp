@@ -21,6 +21,9 @@ enum class Association {
   kIndex,        ///< pose i to pose i, for files without times
 };
 
+/// "interpolate", "nearest", "index".
+[[nodiscard]] const char* to_string(Association association);
+
 enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kOriginSim3 };
 
 /// "none", "origin", "init_scale", "se3", "sim3", "yaw_only", "origin_sim3".

@@ -29,6 +29,11 @@ class Trajectory {
   /// Marks a gap: between the last pose and the next one appended the pose is unknown.
   void append_gap();
 
+  /// Marks a gap between pose i - 1 and pose i. @pre 0 < i < size()
+  void mark_gap_before(std::size_t i) { after_gap_.insert(i); }
+  /// Whether the pose between pose i - 1 and pose i is unknown.
+  [[nodiscard]] bool has_gap_before(std::size_t i) const { return after_gap_.contains(i); }
+
   [[nodiscard]] const std::vector<StampedPose>& poses() const { return poses_; }
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] std::size_t size() const { return poses_.size(); }

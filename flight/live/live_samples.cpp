@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/logs/stream_statistics.hpp"
 #include "flight/mavlink/messages.hpp"
 
 namespace overfly::flight::live {
@@ -47,9 +48,16 @@ bool is_within(const std::optional<Eigen::Vector3d>& value, double limit) {
   return value && value->allFinite() && value->norm() <= limit;
 }
 
+template <typename Sample>
+void forget(std::deque<Sample>& samples, std::int64_t t_ns) {
+  while (samples.size() > 1 && samples[1].t_ns <= t_ns) samples.pop_front();
+}
+
+}  // namespace
+
 /// Puts a sample at its place. Nothing happens if its time is known.
 template <typename Sample>
-void insert_by_time(std::deque<Sample>& samples, const Sample& sample) {
+void LiveSamples::insert_by_time(std::deque<Sample>& samples, const Sample& sample) {
   if (samples.empty() || samples.back().t_ns < sample.t_ns) {
     samples.push_back(sample);
     return;
@@ -58,15 +66,27 @@ void insert_by_time(std::deque<Sample>& samples, const Sample& sample) {
       samples.begin(), samples.end(), sample.t_ns, [](const Sample& each, std::int64_t t_ns) {
         return each.t_ns < t_ns;
       });
-  if (at->t_ns != sample.t_ns) samples.insert(at, sample);
+  const bool is_known = at->t_ns == sample.t_ns;
+  const std::int64_t back_ns = samples.back().t_ns - sample.t_ns;
+  if (back_ns > 0 && position_ && (is_known || sample.t_ns < forgotten_ns_)) {
+    ++doubts_.backward;
+    if (back_ns > doubts_.furthest_back_ns) {
+      doubts_.furthest_back_ns = back_ns;
+      doubts_.furthest_back_at_ns = samples.back().t_ns;
+    }
+  }
+  if (!is_known) samples.insert(at, sample);
 }
 
-template <typename Sample>
-void forget(std::deque<Sample>& samples, std::int64_t t_ns) {
-  while (samples.size() > 1 && samples[1].t_ns <= t_ns) samples.pop_front();
+void LiveSamples::count_jump(const LivePosition& from, const LivePosition& to) {
+  const double jump_m = logs::jump_between_m(
+      logs::PositionKind::kGeodetic, from.geodetic, to.geodetic, to.t_ns - from.t_ns);
+  if (jump_m == 0.0) return;
+  ++doubts_.jumps;
+  if (jump_m <= doubts_.largest_jump_m) return;
+  doubts_.largest_jump_m = jump_m;
+  doubts_.largest_jump_ns = to.t_ns;
 }
-
-}  // namespace
 
 void LiveSamples::take(const mavlink::Frame& frame) {
   if (restarted_) return;
@@ -138,7 +158,11 @@ void LiveSamples::take_position(logs::StreamId id,
     sample.has_velocity = true;
   }
   full_ = full_ || stream.positions.size() >= kMaxLiveSamples;
-  if (!full_) insert_by_time(stream.positions, sample);
+  if (full_) return;
+  if (position_ && !stream.positions.empty() && stream.positions.back().t_ns != sample.t_ns) {
+    count_jump(stream.positions.back(), sample);
+  }
+  insert_by_time(stream.positions, sample);
 }
 
 void LiveSamples::take_attitude(logs::StreamId id,
@@ -166,8 +190,17 @@ void LiveSamples::keep_only(logs::StreamId position, logs::StreamId attitude) {
   }
 }
 
+void LiveSamples::start_at(std::int64_t t_ns) {
+  forget_before(t_ns);
+  doubts_ = {};
+  if (!position_) return;
+  const std::deque<LivePosition>& positions = streams_[*position_].positions;
+  for (std::size_t i = 1; i < positions.size(); ++i) count_jump(positions[i - 1], positions[i]);
+}
+
 void LiveSamples::forget_before(std::int64_t t_ns) {
   if (!position_) return;
+  forgotten_ns_ = t_ns;
   forget(streams_[*position_].positions, t_ns);
   forget(streams_[*attitude_].attitudes, t_ns);
 }

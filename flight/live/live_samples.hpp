@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,18 @@ struct LiveStream {
   std::uint64_t without_origin = 0;         ///< local positions left out
 };
 
+/// What looks wrong in the samples of the streams that are flown, from the flight's start on.
+struct LiveDoubts {
+  std::uint64_t jumps = 0;  ///< steps between positions as logs::jump_between_m()
+  double largest_jump_m = 0.0;
+  std::int64_t largest_jump_ns = 0;  ///< the vehicle's clock behind it
+  /// Samples left out: earlier than the one before them, and their time was known already or the
+  /// flight had passed it.
+  std::uint64_t backward = 0;
+  std::int64_t furthest_back_ns = 0;     ///< of these, before the latest time
+  std::int64_t furthest_back_at_ns = 0;  ///< that latest time
+};
+
 /// Collects the samples of one vehicle by the same rules as a recording of it. Messages that come
 /// late are put in order; times that are known already are left out. Messages are held until the
 /// vehicle's clock is proven (HeldMessages): first stamps that are wrong begin no flight. Not
@@ -67,6 +80,9 @@ class LiveSamples final : private logs::LogSink {
   void keep_only(logs::StreamId position, logs::StreamId attitude);
   /// Drops samples that are not needed from `t_ns` on.
   void forget_before(std::int64_t t_ns);
+  /// The flight starts at `t_ns`: drops samples and doubts from before it.
+  void start_at(std::int64_t t_ns);
+  [[nodiscard]] const LiveDoubts& doubts() const { return doubts_; }
 
   /// The first time of the vehicle's clock; empty before it.
   [[nodiscard]] std::optional<std::int64_t> first_ns() const { return first_ns_; }
@@ -98,11 +114,16 @@ class LiveSamples final : private logs::LogSink {
                      const Eigen::Quaterniond& R_ned_body) override;
   void take_invalid(logs::StreamId /*id*/) override { ++invalid_; }
   [[nodiscard]] logs::PositionKind position_kind(logs::StreamId id) const override;
+  template <typename Sample>
+  void insert_by_time(std::deque<Sample>& samples, const Sample& sample);
+  void count_jump(const LivePosition& from, const LivePosition& to);
 
   logs::FrameStreams streams_of_frames_;
   std::deque<LiveStream> streams_;  ///< by StreamId
   std::optional<logs::StreamId> position_;
   std::optional<logs::StreamId> attitude_;
+  std::int64_t forgotten_ns_ = std::numeric_limits<std::int64_t>::min();
+  LiveDoubts doubts_;
   std::optional<std::uint32_t> boot_;
   std::optional<std::int64_t> first_ns_;
   std::optional<std::int64_t> latest_ns_;

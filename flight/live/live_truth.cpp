@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/text/number_text.hpp"
+#include "flight/live/live_doubts.hpp"
 #include "flight/live/live_motion.hpp"
 #include "flight/live/state_wait.hpp"
 #include "flight/live/stop_watch.hpp"
@@ -154,7 +155,7 @@ bool LiveTruth::Impl::choose() {
   streams = chosen;
   start_ns = first_ns;
   samples->keep_only(chosen->position, chosen->attitude);
-  samples->forget_before(start_ns);
+  samples->start_at(start_ns);
   samples->sensors().forget_before(start_ns);
   return true;
 }
@@ -162,7 +163,7 @@ bool LiveTruth::Impl::choose() {
 /// Forgets the flight so far until its start condition holds.
 void LiveTruth::Impl::await_start(const mavlink::Frame& message) {
   start_ns = known_until_ns();
-  samples->forget_before(start_ns);
+  samples->start_at(start_ns);
   samples->sensors().forget_before(start_ns);
   started = message.message_id == static_cast<std::uint32_t>(mavlink::MessageId::kMissionCurrent) &&
             mavlink::decode_mission_sequence(message) >= options.start.mission_item;
@@ -234,6 +235,9 @@ std::vector<std::string> LiveTruth::warnings() const {
                        counted(impl_->restarts, "time") + "): what it had sent was forgotten");
   }
   if (const auto gaps = impl_->motion.gaps_text(impl_->start_ns)) warnings.push_back(*gaps);
+  for (std::string& text : texts_of(impl_->samples->doubts(), impl_->start_ns)) {
+    warnings.push_back(std::move(text));
+  }
   if (impl_->end_ns) {
     warnings.push_back("the flight ended at " + seconds_shown(*impl_->end_ns - impl_->start_ns) +
                        ": " + impl_->end_reason);
@@ -305,7 +309,7 @@ void LiveTruth::begin() {
   const std::lock_guard lock(impl_->news.mutex);
   if (impl_->end_ns) return;
   impl_->start_ns = impl_->known_until_ns();
-  impl_->samples->forget_before(impl_->start_ns);
+  impl_->samples->start_at(impl_->start_ns);
   impl_->news.arrivals.use_latest();
   if (impl_->sender) impl_->sender->start_at(impl_->start_ns);
 }

@@ -39,6 +39,7 @@ void BootClock::follow(std::int64_t step_ns) {
 /// The last of three stamps that agree, but not with the latest time.
 LogTime BootClock::believe(std::int64_t t_ns) {
   agreeing_ = 0;
+  believed_suspicion_ = suspicions_;
   if (first_ < kBelieved) {
     first_were_wrong_ = true;
     right_until_ns_ = -1;
@@ -78,6 +79,7 @@ std::optional<LogTime> BootClock::take(std::int64_t t_ns) {
   const bool agrees =
       agreeing_ > 0 && from_suspect_ns >= -kAgreementNs && from_suspect_ns <= kAgreementNs;
   agreeing_ = agrees ? agreeing_ + 1 : 1;
+  if (!agrees) ++suspicions_;
   suspect_ns_ = t_ns;
   if (agreeing_ < kBelieved) {
     ++implausible_;

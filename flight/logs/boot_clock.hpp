@@ -38,6 +38,17 @@ class BootClock {
   [[nodiscard]] bool was_wrong(const LogTime& time) const {
     return right_until_ns_ && time.t_ns > *right_until_ns_;
   }
+  /// Stamps that agree with each other, but not with the latest time: they may be believed.
+  struct Suspicion {
+    std::uint64_t number = 0;  ///< from 1 on
+    std::int64_t t_ns = 0;     ///< the latest of its stamps
+  };
+  /// The suspicion that the latest stamp belongs to; empty if that stamp was plausible or believed.
+  [[nodiscard]] std::optional<Suspicion> suspicion() const {
+    return agreeing_ > 0 ? std::optional(Suspicion{suspicions_, suspect_ns_}) : std::nullopt;
+  }
+  /// Number of the suspicion whose stamps were believed last; 0: none.
+  [[nodiscard]] std::uint64_t believed_suspicion() const { return believed_suspicion_; }
   [[nodiscard]] std::uint64_t implausible() const { return implausible_; }
 
  private:
@@ -54,6 +65,8 @@ class BootClock {
   bool first_were_wrong_ = false;
   std::int64_t suspect_ns_ = 0;
   int agreeing_ = 0;
+  std::uint64_t suspicions_ = 0;
+  std::uint64_t believed_suspicion_ = 0;
   std::uint64_t implausible_ = 0;
 };
 

@@ -28,6 +28,15 @@ double distance_m(PositionKind kind, const Eigen::Vector3d& from, const Eigen::V
 
 }  // namespace
 
+double jump_between_m(PositionKind kind,
+                      const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& to,
+                      std::int64_t interval_ns) {
+  const double jump_m = std::hypot(distance_m(kind, from, to), to.z() - from.z());
+  const double step_s = std::abs(s_from_ns(interval_ns));
+  return jump_m > kJumpM + kJumpSpeedMS * step_s ? jump_m : 0.0;
+}
+
 StreamStatistics::StreamStatistics(StreamDescription description) {
   info_.description = std::move(description);
   info_.georeferenced = info_.description.position == PositionKind::kGeodetic;
@@ -71,9 +80,8 @@ void StreamStatistics::position(const LogTime& time, const Eigen::Vector3d& valu
     info_.lowest_m = info_.highest_m = height_m;
   } else if (time.boot == position_time_.boot) {
     const double jump_m =
-        std::hypot(distance_m(kind, last_position_, value), value.z() - last_position_.z());
-    const double step_s = std::abs(s_from_ns(time.t_ns - position_time_.t_ns));
-    if (jump_m > kJumpM + kJumpSpeedMS * step_s) {
+        jump_between_m(kind, last_position_, value, time.t_ns - position_time_.t_ns);
+    if (jump_m > 0.0) {
       ++info_.jumps;
       info_.largest_jump_m = std::max(info_.largest_jump_m, jump_m);
     }

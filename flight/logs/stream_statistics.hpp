@@ -9,6 +9,12 @@
 
 namespace overfly::flight::logs {
 
+/// The distance between two positions if it is a jump: more than 20 m and 150 m/s. 0: it is none.
+[[nodiscard]] double jump_between_m(PositionKind kind,
+                                    const Eigen::Vector3d& from,
+                                    const Eigen::Vector3d& to,
+                                    std::int64_t interval_ns);
+
 class StreamStatistics {
  public:
   explicit StreamStatistics(StreamDescription description);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/motion/trajectory.hpp"
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/known_flight.hpp"
 #include "flight/logs/ned_attitude.hpp"
@@ -149,6 +150,35 @@ Result<PlacedPoses> place_poses(const logs::LogTrajectory& log, const LogFlightO
   return placed;
 }
 
+/// The median of each coordinate. @pre not empty
+Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& path) {
+  Eigen::Vector3d middle;
+  std::vector<double> values(path.size());
+  const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < path.size(); ++i) values[i] = path[i][axis];
+    std::nth_element(values.begin(), median, values.end());
+    middle[axis] = *median;
+  }
+  return middle;
+}
+
+/// @param path  positions of the log's poses [m]
+Status check_extent(const logs::LogTrajectory& log, const std::vector<Eigen::Vector3d>& path) {
+  const Eigen::Vector3d middle = middle_of(path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double distance_m = (path[i] - middle).norm();
+    if (distance_m <= kFarthestFromMiddleM) continue;
+    return Error{ErrorCode::kUnreadable,
+                 log.position_source + ": the position at " + seconds_text(log.poses[i].t_ns) +
+                     " s of the vehicle's clock is " +
+                     std::to_string(static_cast<std::int64_t>(distance_m / 1000.0)) +
+                     " km away from the middle of the flight: it must be damaged. `smooth` leaves "
+                     "such out, as do `from_s` and `to_s`"};
+  }
+  return {};
+}
+
 SensorRequest sensor_request(const LogFlightOptions& options,
                              const std::string& source,
                              std::int64_t begin_ns,
@@ -234,6 +264,9 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   std::vector<Eigen::Vector3d> path;
   path.reserve(poses.size());
   for (const Pose& pose : poses) path.push_back(pose.translation);
+  if (!options.far_poses) {
+    if (Status status = check_extent(*log, path); !status) return status.error().in(file.string());
+  }
   const Pose T_world_log = place_of(options, path, log_frame, frame, ground);
   Trajectory trajectory;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -55,7 +55,13 @@ struct LogFlightOptions {
   /// Where positions count from if the log does not state it; east, north, up from there. Not for
   /// smoothed flights.
   std::optional<Geodetic> local_origin;
+  /// Flies poses more than kFarthestFromMiddleM from the middle of the flight as well: for uses
+  /// that draw nothing there.
+  bool far_poses = false;
 };
+
+/// Farther away a pose of a flight that is not smoothed must be damaged.
+inline constexpr double kFarthestFromMiddleM = 1e6;
 
 /// Whether fly_flight_log() can fly a file: it is a flight log, not a file of poses.
 [[nodiscard]] bool is_flight_log(const std::filesystem::path& file);
@@ -66,7 +72,8 @@ struct LogFlightOptions {
 /// @param sources  which files the log may name
 /// Errors: as open_log, choose_truth, read_log_trajectory and smooth_log; kUnsupported if the log
 /// does not state where its positions are and no origin is given, kInvalidArgument if both do;
-/// kInvalidArgument if the flight has less than 2 poses.
+/// kUnreadable if the flight has less than 2 poses, or one is too far away: names its stream and
+/// time.
 [[nodiscard]] Result<std::unique_ptr<TruthSource>> fly_flight_log(
     const std::filesystem::path& file,
     const LogFlightOptions& options,

@@ -21,8 +21,13 @@ class LoggedSensors final : public SampleSource {
     return tracks.take_until(begin_ns_ + t_ns, begin_ns_);
   }
   [[nodiscard]] std::string sensor_report() const override {
-    std::string sensors = tracks.report("not logged");
-    if (sensors.empty()) return sensors;
+    const std::string left_out = left_out_text();
+    std::string sensors = tracks.report(left_out.empty() ? "not logged" : "not given");
+    if (sensors.empty() && left_out.empty()) return {};
+    if (sensors.empty()) sensors = "none is given";
+    if (!left_out.empty()) {
+      sensors += "; logged, but left out because the flight is moved: " + left_out;
+    }
     if (without_value > 0) {
       sensors += "; " + std::to_string(without_value) + " messages had no value that can be right";
     }
@@ -32,7 +37,39 @@ class LoggedSensors final : public SampleSource {
   SensorTracks tracks{kMaxLoggedSamples};
   std::uint64_t without_value = 0;  ///< messages of sensors
 
+  /// Leaves out what would give the old place and its heights.
+  void take_place_out(SensorSamples& samples) {
+    const auto take_out = [](auto& list, bool& left_out) {
+      left_out = left_out || !list.empty();
+      list.clear();
+    };
+    take_out(samples.barometer, left_out_.barometer);
+    take_out(samples.gps, left_out_.gps);
+    take_out(samples.magnetometer, left_out_.magnetometer);
+    take_out(samples.range, left_out_.range);
+  }
+
  private:
+  [[nodiscard]] std::string left_out_text() const {
+    std::string names;
+    for (const auto& [name, left_out] : {std::pair{"barometer", left_out_.barometer},
+                                         std::pair{"gps", left_out_.gps},
+                                         std::pair{"magnetometer", left_out_.magnetometer},
+                                         std::pair{"range", left_out_.range}}) {
+      if (left_out) names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names;
+  }
+
+  /// Sensors whose samples the log has, but a moved flight has not.
+  struct LeftOut {
+    bool barometer = false;
+    bool gps = false;
+    bool magnetometer = false;
+    bool range = false;
+  };
+
+  LeftOut left_out_;
   std::int64_t begin_ns_;
 };
 
@@ -72,13 +109,7 @@ class SensorSink final : public logs::LogSink {
     }
     if (samples.empty()) ++sensors_.without_value;
     SensorSamples kept = samples;
-    if (request_.moved) {
-      // They would give the old place and its heights.
-      kept.gps.clear();
-      kept.magnetometer.clear();
-      kept.barometer.clear();
-      kept.range.clear();
-    }
+    if (request_.moved) sensors_.take_place_out(kept);
     if (streams_[id].height == logs::HeightDatum::kMeanSeaLevel) {
       for (GpsSample& gps : kept.gps) gps.place.alt_ellipsoid_m += request_.geoid_separation_m;
     }

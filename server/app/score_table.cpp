@@ -1,7 +1,9 @@
 #include "server/app/score_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>
@@ -67,11 +69,34 @@ std::string consistency_text(const evaluation::AlignmentScore& alignment) {
   return text;
 }
 
+std::string notes_text(const evaluation::AlignmentScore& alignment) {
+  std::string text;
+  for (const std::string& note : alignment.notes) text += "    " + note + "\n";
+  return text;
+}
+
 std::string left_out_text(const evaluation::Score& score) {
   if (score.covariances.left_out == 0) return "";
   return formatted("  %d of %d stated covariances are invalid and left out\n",
                    score.covariances.left_out,
                    score.covariances.left_out + score.covariances.stated);
+}
+
+/// Why an estimator ended, and frames without a usable answer.
+std::string trouble_text(const server::EstimatorMetrics& estimator) {
+  std::string text;
+  // Estimators that never ran are reported as errors.
+  if (estimator.crash && estimator.answered > 0) {
+    const bool hung = estimator.score.outcome == evaluation::Outcome::kTimeout;
+    text += (hung ? "    timed out: " : "    crashed: ") + *estimator.crash + "\n";
+  }
+  const auto count = [&](const char* name, std::int64_t frames) {
+    if (frames > 0)
+      text += formatted("    %s: %lld frames\n", name, static_cast<long long>(frames));
+  };
+  count("unanswered", estimator.unanswered);
+  count("hash_mismatches", estimator.hash_mismatches);
+  return text;
 }
 
 /// One line for each interval that the path has, and on request one for the others.
@@ -103,6 +128,9 @@ std::string outcome_text(const evaluation::Score& score) {
   return text;
 }
 
+/// A camera is reported if more of its frames than this see hardly any imagery.
+constexpr double kReportedVoidPercent = 10.0;
+
 /// @param name  of the camera, for people
 std::string notes_of(const std::string& name, const server::CameraMetrics& camera) {
   std::string notes;
@@ -112,6 +140,15 @@ std::string notes_of(const std::string& name, const server::CameraMetrics& camer
         "not the camera, limits the result\n",
         name.c_str(),
         camera.texture.texels_per_pixel_median);
+  }
+  const double void_percent = 100.0 * static_cast<double>(camera.mostly_void_frames) /
+                              std::max(1.0, static_cast<double>(camera.frames));
+  if (void_percent > kReportedVoidPercent) {
+    notes += formatted(
+        "warning: no imagery: in %.0f %% of the frames more than half of the image of %s is "
+        "without imagery\n",
+        void_percent,
+        name.c_str());
   }
   if (camera.late_tiles > 0) {
     notes += formatted(
@@ -148,7 +185,7 @@ std::string errors_text(const evaluation::Score& score, evaluation::AlignmentMod
   const evaluation::AlignmentScore& alignment = found->second;
   return formatted("  %12.3f %12.3f ", alignment.position_m.rmse, alignment.position_rmse_hold_m) +
          figure(rmse_of(alignment.rotation_deg), 12, 4) + "\n" + degenerate_text(alignment) +
-         consistency_text(alignment) + fix_drift_text(alignment, false);
+         consistency_text(alignment) + fix_drift_text(alignment, false) + notes_text(alignment);
 }
 
 }  // namespace
@@ -178,7 +215,8 @@ std::string score_table(const server::RunMetrics& metrics, evaluation::Alignment
                        outcome_text(estimator.score).c_str(),
                        100.0 * estimator.score.coverage,
                        static_cast<long long>(estimator.dropped_frames)) +
-             errors_text(estimator.score, mode) + left_out_text(estimator.score);
+             errors_text(estimator.score, mode) + trouble_text(estimator) +
+             left_out_text(estimator.score);
   }
   return table + "RMSE, alignment " + evaluation::to_string(mode) + "\n";
 }
@@ -210,8 +248,7 @@ std::string alignment_table(const evaluation::Score& score) {
              figure(rmse_of(alignment->rotation_deg), 12, 4) + " " +
              figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + "\n" +
              degenerate_text(*alignment) + consistency_text(*alignment) +
-             fix_drift_text(*alignment, true);
-    for (const std::string& note : alignment->notes) table += "    " + note + "\n";
+             fix_drift_text(*alignment, true) + notes_text(*alignment);
   }
   table += left_out_text(score);
   for (const auto& [mode, reason] : by_name(score.unavailable)) {

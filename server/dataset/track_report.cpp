@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "core/time.hpp"
+#include "evaluation/long_steps.hpp"
 #include "server/record/rows/rows.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
@@ -54,6 +56,24 @@ Result<Trajectory> moved(const Trajectory& trajectory, const Pose& T_given_wante
   return Trajectory::from_poses(poses);
 }
 
+/// The poses of a truth as those of the camera.
+Result<Trajectory> as_camera_poses(const Dataset& dataset,
+                                   const TrajectoryFile& truth,
+                                   std::vector<std::string>& notes) {
+  if (truth.format == TrajectoryFormat::kEuroc && dataset.T_body_camera) {
+    notes.emplace_back(
+        "the truth gives poses of the body; those of the camera are computed with T_BS");
+    return moved(truth.trajectory, *dataset.T_body_camera);
+  }
+  const bool of_another = dataset.T_first_camera && !dataset.T_first_camera->translation.isZero();
+  if (truth.format == TrajectoryFormat::kKitti && of_another) {
+    notes.push_back("the truth gives poses of image_0; those of " + dataset.camera_name +
+                    " are computed with calib.txt");
+    return moved(truth.trajectory, *dataset.T_first_camera);
+  }
+  return truth.trajectory;
+}
+
 }  // namespace
 
 Result<Trajectory> camera_truth(const Dataset& dataset,
@@ -68,18 +88,13 @@ Result<Trajectory> camera_truth(const Dataset& dataset,
     notes.push_back("unknown poses in the truth: " + std::to_string(truth.unknown_poses) +
                     "; frames in these gaps are not scored");
   }
-  if (truth.format == TrajectoryFormat::kEuroc && dataset.T_body_camera) {
-    notes.emplace_back(
-        "the truth gives poses of the body; those of the camera are computed with T_BS");
-    return moved(truth.trajectory, *dataset.T_body_camera);
-  }
-  const bool of_another = dataset.T_first_camera && !dataset.T_first_camera->translation.isZero();
-  if (truth.format == TrajectoryFormat::kKitti && of_another) {
-    notes.push_back("the truth gives poses of image_0; those of " + dataset.camera_name +
-                    " are computed with calib.txt");
-    return moved(truth.trajectory, *dataset.T_first_camera);
-  }
-  return truth.trajectory;
+  Result<Trajectory> camera = as_camera_poses(dataset, truth, notes);
+  if (!camera) return camera;
+  const evaluation::LongSteps steps = evaluation::long_steps(*camera);
+  if (steps.ending.empty()) return camera;
+  notes.push_back("of the truth, " + evaluation::words_for(steps) +
+                  "; frames in them are not scored");
+  return evaluation::with_gaps_in(steps, std::move(*camera));
 }
 
 namespace {

@@ -14,8 +14,9 @@
 namespace overfly::server {
 
 /// Converts the truth to camera poses. EuRoC truth holds body poses and is converted by the data
-/// set's mount; KITTI truth holds poses of image_0 and is converted by calib.txt. `notes` then
-/// lists the conversion and what the truth does not contain.
+/// set's mount; KITTI truth holds poses of image_0 and is converted by calib.txt. Long steps become
+/// gaps (evaluation/long_steps.hpp). `notes` then lists the conversion and what the truth does not
+/// contain.
 [[nodiscard]] Result<Trajectory> camera_truth(const Dataset& dataset,
                                               const TrajectoryFile& truth,
                                               std::vector<std::string>& notes);

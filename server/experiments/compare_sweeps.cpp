@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+#include <set>
+#include <system_error>
 #include <utility>
 
 #include "core/cancel.hpp"
@@ -23,6 +25,29 @@ using ResultsByFlight = std::map<std::string, const SweepResult*>;
 SweepExtent extent_of(const fs::path& sweep) {
   const Result<nlohmann::json> document = read_json(sweep / "sweep.json", kMaxSweepBytes);
   return SweepExtent(document ? *document : nlohmann::json());
+}
+
+/// Errors: kNotFound for a folder that is no sweep; as SweepResults::read.
+Result<SweepResults> results_of(const fs::path& sweep) {
+  std::error_code ignored;
+  if (!fs::exists(sweep / "sweep.json", ignored) && !fs::exists(sweep / "results.jsonl", ignored)) {
+    return Error{ErrorCode::kNotFound,
+                 sweep.string() + ": is no folder of a sweep (sweep.json is missing)"};
+  }
+  return SweepResults::read(sweep);
+}
+
+/// A sweep without any result has no estimator that could be unknown.
+Status check_estimator(const std::string& estimator,
+                       const fs::path& sweep,
+                       const SweepResults& results) {
+  std::set<std::string> known;
+  for (const SweepResult* result : results.newest()) known.insert(result->estimator);
+  if (estimator.empty() || known.empty() || known.contains(estimator)) return {};
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  return Error{ErrorCode::kNotFound,
+               sweep.string() + ": has no estimator " + estimator + " (known: " + names + ")"};
 }
 
 /// Completed flights by what they have in common with the other sweep's.
@@ -113,10 +138,15 @@ Result<PairedSweeps> pair_sweeps(const fs::path& sweep,
                                  const std::string& estimator,
                                  evaluation::AlignmentMode mode,
                                  const std::atomic<bool>* cancel) {
-  const Result<SweepResults> first = SweepResults::read(sweep);
+  const Result<SweepResults> first = results_of(sweep);
   if (!first) return first.error();
-  const Result<SweepResults> second = SweepResults::read(baseline);
+  const Result<SweepResults> second = results_of(baseline);
   if (!second) return second.error();
+  for (const auto& [folder, results] : {std::pair(sweep, &*first), std::pair(baseline, &*second)}) {
+    if (Status status = check_estimator(estimator, folder, *results); !status) {
+      return status.error();
+    }
+  }
   PairedSweeps paired;
   const ResultsByFlight flights =
       results_by_flight(*first, extent_of(sweep), estimator, paired.failed);

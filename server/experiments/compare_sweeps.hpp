@@ -27,7 +27,8 @@ struct PairedSweeps {
 /// @param estimator  only its flights; all if empty
 /// @param cancel  may be null
 /// Without any flight that both have, the result has no pairs.
-/// Errors: as SweepResults::read; as read_run_metrics; kCancelled.
+/// Errors: kNotFound for a folder that is no sweep, and for an estimator that one of them lacks; as
+/// SweepResults::read; as read_run_metrics; kCancelled.
 [[nodiscard]] Result<PairedSweeps> pair_sweeps(const std::filesystem::path& sweep,
                                                const std::filesystem::path& baseline,
                                                const std::string& estimator,

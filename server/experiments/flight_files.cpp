@@ -1,6 +1,7 @@
 #include "server/experiments/flight_files.hpp"
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -8,6 +9,8 @@
 #include "core/outside/file_text.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_info_file.hpp"
+#include "server/scoring/metrics.hpp"
+#include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -51,7 +54,19 @@ fs::path FlightFiles::output(const std::string& id) const {
 
 bool FlightFiles::is_completed(const std::string& id) const {
   const Result<RunInfo> info = read_run_info(run(id));
-  return info && info->status == RunStatus::kCompleted;
+  return info && info->status == RunStatus::kCompleted && none_ran(id).empty();
+}
+
+std::string FlightFiles::none_ran(const std::string& id) const {
+  const Result<RunMetrics> metrics = read_run_metrics(run(id));
+  if (!metrics) return "";  // The reader of the results reports it.
+  const std::map<std::string, std::string> reasons = never_ran(*metrics);
+  if (reasons.size() < metrics->estimators.size()) return "";
+  std::string texts;
+  for (const auto& [name, reason] : reasons) {
+    texts += (texts.empty() ? "" : "; ") + never_ran_text(name, reason);
+  }
+  return texts;
 }
 
 Status FlightFiles::launch(FlightExecutor& executor,
@@ -73,12 +88,18 @@ Status FlightFiles::launch(FlightExecutor& executor,
 std::string FlightFiles::failure(const EndedFlight& ended, double timeout_s) const {
   if (ended.timed_out) return "took longer than timeout_s = " + Json(timeout_s).dump();
   const Result<RunInfo> info = read_run_info(run(ended.id));
-  if (info && info->status == RunStatus::kCompleted && info->problem.empty()) return "";
+  if (info && info->status == RunStatus::kCompleted && info->problem.empty()) {
+    return none_ran(ended.id);
+  }
   if (info && !info->problem.empty()) return info->problem;
   if (info && !info->error.empty()) return info->error;
   const std::string words = last_words(output(ended.id));
   return ended.reason.empty() ? "no run was recorded"
                               : ended.reason + (words.empty() ? "" : ": " + words);
+}
+
+std::string never_ran_text(const std::string& estimator, const std::string& reason) {
+  return "estimator " + estimator + " never ran: " + reason;
 }
 
 }  // namespace overfly::server::experiments

@@ -18,6 +18,8 @@ class FlightFiles {
   /// Creates the folders. Errors: kIo.
   [[nodiscard]] Status create() const;
   [[nodiscard]] std::filesystem::path run(const std::string& id) const;
+  /// Whether a flight has results, so that it need not be flown again: its run was completed, and
+  /// at least one estimator ran.
   [[nodiscard]] bool is_completed(const std::string& id) const;
   /// Starts the flight of a scenario. The run folder of a flight that was not completed is removed.
   /// @param options  as FlightJob::options
@@ -27,13 +29,18 @@ class FlightFiles {
                               const Scenario& scenario,
                               double timeout_s,
                               std::vector<std::string> options) const;
-  /// Why a flight that has ended has no results; empty if it has.
+  /// Why a flight that has ended has no results (of any estimator); empty if it has.
   [[nodiscard]] std::string failure(const EndedFlight& ended, double timeout_s) const;
 
  private:
   [[nodiscard]] std::filesystem::path output(const std::string& id) const;
+  /// Why no estimator of a completed run ran; empty if one did.
+  [[nodiscard]] std::string none_ran(const std::string& id) const;
 
   std::filesystem::path folder_;
 };
+
+/// "estimator mine never ran: REASON"
+[[nodiscard]] std::string never_ran_text(const std::string& estimator, const std::string& reason);
 
 }  // namespace overfly::server::experiments

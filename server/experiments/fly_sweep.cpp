@@ -16,6 +16,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/runs/run_memory.hpp"
+#include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server::experiments {
@@ -34,6 +35,14 @@ struct Flying {
 
 std::string flight_text(const Json& cell, int repeat) {
   return cell.dump() + " " + std::to_string(repeat);
+}
+
+/// Why an estimator has no result of a completed flight; empty if it has.
+std::string lack_of_result(const std::string& estimator, const RunMetrics& metrics) {
+  if (!metrics.estimators.contains(estimator)) return "metrics.json: lacks estimator " + estimator;
+  const std::map<std::string, std::string> reasons = never_ran(metrics);
+  const auto reason = reasons.find(estimator);
+  return reason == reasons.end() ? "" : never_ran_text(estimator, reason->second);
 }
 
 class SweepFlyer {
@@ -178,11 +187,13 @@ class SweepFlyer {
       warn(failure + "; flown again");
       return launch(*flying);
     }
-    if (Status status = record(flying->due, ended, failure, metrics); !status) return status;
+    const Result<std::string> problem = record(flying->due, ended, failure, metrics);
+    if (!problem) return problem.error();
     ++flown_.progress.flown;
-    if (!failure.empty()) {
+    if (!problem->empty()) {
       ++flown_.progress.failed;
-      warn(cell_text(flown_.plan.cells()[flying->due.cell].values) + ": " + failure);
+      const std::string cell = cell_text(flown_.plan.cells()[flying->due.cell].values);
+      warn((cell.empty() ? "" : cell + ": ") + *problem);
     }
     flown_.plan.over(flying->due);
     flying_.erase(flying);
@@ -190,10 +201,13 @@ class SweepFlyer {
     return {};
   }
 
-  Status record(const DueFlight& due,
-                const EndedFlight& ended,
-                const std::string& failure,
-                const RunMetrics& metrics) {
+  /// @param failure  of the whole flight; empty if it has results
+  /// @return why estimators have no result; empty if all have one
+  Result<std::string> record(const DueFlight& due,
+                             const EndedFlight& ended,
+                             const std::string& failure,
+                             const RunMetrics& metrics) {
+    std::string problems = failure;
     for (std::size_t i = 0; i < due.keys.size(); ++i) {
       SweepResult result;
       result.key = due.keys[i];
@@ -203,16 +217,15 @@ class SweepFlyer {
       result.estimator = due.scenario.estimators[i].name;
       result.run = "runs/" + due.key;
       result.duration_s = ended.duration_s;
-      result.error = failure;
-      const auto scored = metrics.estimators.find(result.estimator);
-      if (failure.empty() && scored == metrics.estimators.end()) {
-        result.error = "metrics.json: lacks estimator " + result.estimator;
+      result.error = failure.empty() ? lack_of_result(result.estimator, metrics) : failure;
+      if (result.completed()) {
+        result.outcome = metrics.estimators.at(result.estimator).score.outcome;
       } else if (failure.empty()) {
-        result.outcome = scored->second.score.outcome;
+        problems += (problems.empty() ? "" : "; ") + result.error;
       }
-      if (Status status = flown_.results.add(result); !status) return status;
+      if (Status status = flown_.results.add(result); !status) return status.error();
     }
-    return {};
+    return problems;
   }
 
   /// Cells and repeats that have the flight of another one get a line each.
@@ -230,9 +243,10 @@ class SweepFlyer {
   void show() {
     SweepProgress& progress = flown_.progress;
     progress.passed = flown_.plan.passed_flights();
-    if (progress.flown > 0) {
-      const auto rest =
-          static_cast<double>(progress.most - std::min(progress.passed, progress.most));
+    const auto rest = static_cast<double>(progress.most - std::min(progress.passed, progress.most));
+    if (rest == 0.0) {
+      progress.left_s = 0.0;
+    } else if (progress.flown > 0) {
       const double each_s = own_s_ / static_cast<double>(progress.flown);
       progress.left_s = rest * each_s / static_cast<double>(most_at_once_);
     }

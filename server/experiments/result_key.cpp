@@ -1,15 +1,21 @@
 #include "server/experiments/result_key.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "core/measure/sha256.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
 #include "server/experiments/program_files.hpp"
+#include "server/experiments/script_modules.hpp"
 #include "server/files/file_stamp.hpp"
 #include "server/files/program_identity.hpp"
+#include "server/files/recent_values.hpp"
+#include "server/record/run_folder.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -65,6 +71,35 @@ void add_named_files(const Json& value, const fs::path& folder, bool follow, Nam
   add_file((folder / name).lexically_normal(), follow, files);
 }
 
+/// The words of a command; those before the first that is no text.
+std::vector<std::string> command_of(const Json& estimator) {
+  std::vector<std::string> command;
+  const auto found = estimator.find("command");
+  if (found == estimator.end() || !found->is_array()) return command;
+  for (const Json& word : *found) {
+    if (!word.is_string()) break;
+    command.push_back(word.get<std::string>());
+  }
+  return command;
+}
+
+/// Digest of the contents of modules. Those that have not changed are not read again: a sweep has a
+/// key for each of its flights.
+std::string digest_of_modules(const std::vector<fs::path>& modules) {
+  static RecentValues<std::string> known(16);
+  const std::string stamps = content_key(modules);
+  if (const auto digest = known.find(stamps)) return *digest;
+  NamedFiles files;
+  for (const fs::path& module : modules) add_file(module, false, files);
+  std::string digest = digest_of(files.text);
+  const std::int64_t now_ns = utc_now_ns();
+  const bool settled = std::all_of(modules.begin(), modules.end(), [&](const fs::path& module) {
+    return FileStamp::of(module).settled(now_ns);
+  });
+  if (settled) known.keep(stamps, std::make_shared<const std::string>(digest));
+  return digest;
+}
+
 }  // namespace
 
 std::string flight_key(const Scenario& scenario) {
@@ -80,12 +115,11 @@ std::string flight_key(const Scenario& scenario) {
 std::string result_key(const std::string& flight, const Json& estimator) {
   NamedFiles files{{}, flight + "\n" + estimator.dump()};
   add_named_files(estimator, "/", false, files);
-  const auto command = estimator.find("command");
-  if (command != estimator.end() && command->is_array() && !command->empty() &&
-      command->front().is_string()) {
-    for (const fs::path& file : program_files(command->front().get<std::string>())) {
-      add_file(file, false, files);
-    }
+  const std::vector<std::string> command = command_of(estimator);
+  if (!command.empty()) {
+    for (const fs::path& file : program_files(command.front())) add_file(file, false, files);
+    const std::vector<fs::path> modules = script_modules(command);
+    if (!modules.empty()) files.text += "\nmodules " + digest_of_modules(modules);
   }
   return digest_of(files.text);
 }

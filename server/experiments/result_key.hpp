@@ -14,8 +14,8 @@ namespace overfly::server::experiments {
 [[nodiscard]] std::string flight_key(const Scenario& scenario);
 
 /// Digest of a flight and of one of its estimators, as the scenario's document describes it, with
-/// the files that it names (a vocabulary) and its program_files. What an estimator behind LCM or
-/// ROS consists of is not known.
+/// the files that it names (a vocabulary), its program_files and its script_modules. What an
+/// estimator behind LCM or ROS consists of is not known.
 [[nodiscard]] std::string result_key(const std::string& flight, const nlohmann::json& estimator);
 
 }  // namespace overfly::server::experiments

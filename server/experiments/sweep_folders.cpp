@@ -1,6 +1,7 @@
 #include "server/experiments/sweep_folders.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -66,7 +67,38 @@ std::int64_t changed_ns(const fs::path& folder) {
   return results.exists ? results.modified_ns : FileStamp::of(sweep_file(folder)).modified_ns;
 }
 
+/// Whether a sweep makes a file or folder of this name. Hidden ones are locks and files that are
+/// being written.
+bool is_of_sweep(const std::string& name) {
+  constexpr std::array<const char*, 9> kNames{"runs",
+                                              "scenarios",
+                                              "output",
+                                              "jobs",
+                                              "frame_cache",
+                                              "results.jsonl",
+                                              "progress.json",
+                                              "summary.md",
+                                              "envelope.json"};
+  return name.starts_with('.') || std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
 }  // namespace
+
+Status check_sweep_folder(const fs::path& folder) {
+  if (FileStamp::of(sweep_file(folder)).exists) return {};
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    const std::string name = entry->path().filename().string();
+    if (is_of_sweep(name)) continue;
+    return Error{ErrorCode::kConflict,
+                 folder.string() +
+                     ": is no folder of a sweep (sweep.json is missing), and not "
+                     "empty: it has " +
+                     name};
+  }
+  return {};
+}
 
 Result<Json> sweep_entry(const fs::path& sweeps_folder, const std::string& name) {
   const Error absent{ErrorCode::kNotFound, "sweep \"" + name + "\": no such sweep"};

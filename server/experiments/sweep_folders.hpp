@@ -9,6 +9,11 @@
 
 namespace overfly::server::experiments {
 
+/// Checks that a folder can become, or is, that of a sweep: it has a sweep.json, or nothing but
+/// what a sweep makes before that, or it is empty or absent. Errors: kConflict naming a file that
+/// is of something else.
+[[nodiscard]] Status check_sweep_folder(const std::filesystem::path& folder);
+
 /// {"sweeps": [...]}, with an entry as of sweep_entry for each folder that has a sweep, those flown
 /// last first; at most 1000.
 /// @param sweeps_folder  may be absent

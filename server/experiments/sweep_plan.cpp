@@ -6,9 +6,11 @@
 
 #include "core/cancel.hpp"
 #include "core/measure/sha256.hpp"
+#include "core/text/number_text.hpp"
 #include "evaluation/statistics/wilson.hpp"
 #include "server/experiments/pictures/picture_key.hpp"
 #include "server/experiments/result_key.hpp"
+#include "vo_bridges/process/child/program.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -36,6 +38,56 @@ void keep_estimators(Scenario& scenario, const std::vector<std::size_t>& kept) {
   scenario.resolved["estimators"] = std::move(documents);
 }
 
+/// What is wrong in the cells of a sweep: each different error once.
+class CellErrors {
+ public:
+  /// @param error  as of scenario_of
+  void add(const SweepCell& cell, const Error& error) {
+    const std::string text = cell_text(cell.values);
+    const std::string context = text + ": ";
+    const bool named = !text.empty() && error.message.starts_with(context);
+    const std::string message = named ? error.message.substr(context.size()) : error.message;
+    if (error.code == ErrorCode::kForbidden) code_ = ErrorCode::kForbidden;
+    const auto known = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& fault) {
+      return fault.message == message;
+    });
+    if (known == faults_.end()) {
+      faults_.push_back({message, text, 1});
+    } else {
+      ++known->cells;
+    }
+  }
+  [[nodiscard]] bool empty() const { return faults_.empty(); }
+  [[nodiscard]] Error error() const {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(faults_.size(), kMostMessages); ++i) {
+      text += (i > 0 ? "\n" : "") + words_of(faults_[i]);
+    }
+    if (faults_.size() > kMostMessages) {
+      text += "\nand " + counted(faults_.size() - kMostMessages, "other error");
+    }
+    return {code_, text};
+  }
+
+ private:
+  struct Fault {
+    std::string message;
+    std::string cell;  ///< the first one that has it, in words
+    std::size_t cells = 0;
+  };
+  static constexpr std::size_t kMostMessages = 10;
+
+  static std::string words_of(const Fault& fault) {
+    if (fault.cell.empty()) return fault.message;
+    if (fault.cells == 1) return fault.cell + ": " + fault.message;
+    return fault.message + " (in " + std::to_string(fault.cells) + " cells; the first is " +
+           fault.cell + ")";
+  }
+
+  std::vector<Fault> faults_;
+  ErrorCode code_ = ErrorCode::kInvalidArgument;
+};
+
 }  // namespace
 
 bool has_enough(const RepeatRule& rule, int successes, int flights) {
@@ -47,18 +99,13 @@ bool has_enough(const RepeatRule& rule, int successes, int flights) {
 Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
                                   std::vector<SweepCell> cells,
                                   const std::atomic<bool>* cancel) {
-  constexpr int kMostMessages = 10;
   SweepPlan plan(sweep, std::move(cells));
-  std::string messages;
-  int faults = 0;
-  ErrorCode code = ErrorCode::kInvalidArgument;
+  CellErrors errors;
   for (std::size_t i = 0; i < plan.cells_.size(); ++i) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const Result<Scenario> scenario = scenario_of(sweep, plan.cells_[i], 0);
     if (!scenario) {
-      if (scenario.error().code == ErrorCode::kForbidden) code = ErrorCode::kForbidden;
-      if (++faults <= kMostMessages)
-        messages += (faults > 1 ? "\n" : "") + scenario.error().message;
+      errors.add(plan.cells_[i], scenario.error());
       continue;
     }
     if (scenario->is_live()) {
@@ -67,21 +114,25 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
     }
     plan.states_[i].pictures = picture_key(*scenario);
     ++plan.cells_with_pictures_[plan.states_[i].pictures];
-    for (const EstimatorSpec& estimator : scenario->estimators) {
-      if (std::find(plan.estimators_.begin(), plan.estimators_.end(), estimator.name) ==
-          plan.estimators_.end()) {
-        plan.estimators_.push_back(estimator.name);
-      }
-    }
+    for (const EstimatorSpec& estimator : scenario->estimators) plan.note_estimator(estimator);
   }
-  if (faults > kMostMessages) {
-    messages += "\nand " + std::to_string(faults - kMostMessages) + " cells more";
-  }
-  if (faults > 0) return Error{code, messages};
+  if (!errors.empty()) return errors.error();
   if (plan.estimators_.empty()) {
     return Error{ErrorCode::kInvalidArgument, "estimators: must have at least one"};
   }
   return plan;
+}
+
+void SweepPlan::note_estimator(const EstimatorSpec& estimator) {
+  const auto add = [](std::vector<std::string>& texts, const std::string& text) {
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  };
+  add(estimators_, estimator.name);
+  if (estimator.command.empty()) return;
+  const auto program = process::find_program(estimator.command.front());
+  if (!program) {
+    add(absent_programs_, "estimator " + estimator.name + ": " + program.error().message);
+  }
 }
 
 bool SweepPlan::is_flying(const std::string& key) const {

@@ -31,7 +31,8 @@ struct DueFlight {
 class SweepPlan {
  public:
   /// Resolves the first repeat of every cell.
-  /// Errors: as scenario_of, for up to ten cells, one a line; kCancelled.
+  /// Errors: as scenario_of, for all cells: each different message once, one a line, at most ten;
+  /// kCancelled.
   [[nodiscard]] static Result<SweepPlan> make(const Sweep& sweep,
                                               std::vector<SweepCell> cells,
                                               const std::atomic<bool>* cancel = nullptr);
@@ -54,6 +55,9 @@ class SweepPlan {
   [[nodiscard]] std::size_t passed_flights() const;
   /// Names of the estimators, in the order of the first cell's scenario, then of the others.
   [[nodiscard]] const std::vector<std::string>& estimators() const { return estimators_; }
+  /// Programs of estimators that are missing on this machine, in words. Workers on others may have
+  /// them.
+  [[nodiscard]] const std::vector<std::string>& absent_programs() const { return absent_programs_; }
   /// Results of one estimator in one cell as far as they are known, by repeat.
   [[nodiscard]] std::vector<const SweepResult*> results_of(std::size_t cell,
                                                            const std::string& estimator,
@@ -76,6 +80,7 @@ class SweepPlan {
   };
   SweepPlan(const Sweep& sweep, std::vector<SweepCell> cells)
       : sweep_(&sweep), cells_(std::move(cells)), states_(cells_.size()) {}
+  void note_estimator(const EstimatorSpec& estimator);
   /// Empty if the repeat needs no flight.
   Result<std::optional<DueFlight>> flight_of(std::size_t cell, const SweepResults& results);
   [[nodiscard]] bool is_open(std::size_t cell,
@@ -94,6 +99,7 @@ class SweepPlan {
   std::map<std::string, bool> flying_;  ///< key of a flight that was due -> it is not over
   std::vector<Shared> shared_;          ///< not returned by take_shared() yet
   std::vector<std::string> estimators_;
+  std::vector<std::string> absent_programs_;
 };
 
 }  // namespace overfly::server::experiments

@@ -1,6 +1,7 @@
 #include "server/experiments/sweep_progress.hpp"
 
 #include <cstdint>
+#include <string_view>
 
 #include "server/files/whole_file.hpp"
 
@@ -22,7 +23,7 @@ Status write_progress(const fs::path& folder, const SweepProgress& progress) {
                      {"most", progress.most},
                      {"flown", progress.flown},
                      {"failed", progress.failed},
-                     {"left_s", progress.left_s},
+                     {"left_s", progress.left_s ? Json(*progress.left_s) : Json(nullptr)},
                      {"spent_s", progress.spent_s}});
 }
 
@@ -32,7 +33,9 @@ Json read_progress(const fs::path& folder) {
   Json progress = Json::object();
   for (const char* name : {"passed", "most", "flown", "failed", "left_s", "spent_s"}) {
     const auto found = read->find(name);
-    if (found == read->end() || !found->is_number()) return nullptr;
+    if (found == read->end()) return nullptr;
+    const bool unknown = std::string_view(name) == "left_s" && found->is_null();
+    if (!unknown && !found->is_number()) return nullptr;
     progress[name] = *found;
   }
   return progress;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/result.hpp"
 
@@ -14,7 +15,8 @@ struct SweepProgress {
   std::size_t most = 0;    ///< flights at most
   std::size_t flown = 0;   ///< in this call
   std::size_t failed = 0;  ///< in this call
-  double left_s = 0.0;     ///< estimate for the rest; 0 before the first flight is over
+  /// Estimate for the rest; empty while it is not known: before the first flight is over.
+  std::optional<double> left_s;
   /// By all flights of the sweep so far, one after the other: those of this call with failed
   /// attempts, those of earlier calls as far as they have a result.
   double spent_s = 0.0;

@@ -33,7 +33,7 @@ class McapWriter final : public DatasetWriter {
   }
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
-    if (Status status = add_samples(frame); !status) return status.error();
+    if (Status status = add_mounts_and_samples(frame); !status) return status.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
       const CameraShot& shot = frame.shots[i];
@@ -79,11 +79,10 @@ class McapWriter final : public DatasetWriter {
     return status ? write(names.image, header, ros2_image(header, grey_of(shot.image))) : status;
   }
 
-  Status add_samples(const MadeFrame& frame) {
+  Status add_mounts_and_samples(const MadeFrame& frame) {
     sampled_ = sampled_ || !frame.sensors.empty();
-    if (!sampled_) return {};
     for (const RosMount& mount :
-         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame)) {
+         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame, sampled_)) {
       const Ros2Header header{plan_.epoch_utc_ns + frame.t_ns, mount.parent_frame};
       Status status =
           write("/tf", header, ros2_transform(header, mount.child_frame, mount.T_parent_child));

@@ -20,7 +20,7 @@ class RosbagWriter final : public DatasetWriter {
         unfinished_(std::move(unfinished)) {}
 
   Result<std::vector<std::string>> add(const MadeFrame& frame) override {
-    Status sampled = add_samples(frame);
+    Status sampled = add_mounts_and_samples(frame);
     if (!sampled) return sampled.error();
     std::vector<std::string> names(frame.shots.size());
     for (std::size_t i = 0; i < frame.shots.size(); ++i) {
@@ -51,11 +51,10 @@ class RosbagWriter final : public DatasetWriter {
                   : status;
   }
 
-  Status add_samples(const MadeFrame& frame) {
+  Status add_mounts_and_samples(const MadeFrame& frame) {
     sampled_ = sampled_ || !frame.sensors.empty();
-    if (!sampled_) return {};
     for (const RosMount& mount :
-         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame)) {
+         ros_mounts(plan_.cameras.front().T_body_camera, names_.front().frame, sampled_)) {
       Status status = bag_->add_transform(mount.parent_frame,
                                           mount.child_frame,
                                           plan_.epoch_utc_ns + frame.t_ns,

@@ -35,6 +35,17 @@ std::string suggestion(const std::string& given, const Json& properties) {
   return "";
 }
 
+/// What a branch of `oneOf` wants, for people.
+std::string title_of(const Json& branch) {
+  if (branch.contains("title")) return branch.at("title").get<std::string>();
+  if (!branch.contains("required")) return branch.value("type", "another value");
+  std::string names;
+  for (const Json& name : branch.at("required")) {
+    names += (names.empty() ? "" : ", ") + name.get<std::string>();
+  }
+  return "{" + names + "}";
+}
+
 /// The value of a keyword, or an empty object (`.items()` must not iterate over a temporary).
 const Json& keyword(const Json& node, const char* name) {
   static const Json none = Json::object();
@@ -195,14 +206,27 @@ void JsonSchema::check_one_of(const Json& node,
   std::string titles;
   for (const Json& branch : branches) {
     if (looks_meant(branch, value)) meant.push_back(&branch);
-    titles += (titles.empty() ? "" : ", ") + resolved(branch).value("title", "?");
+    titles += (titles.empty() ? "" : ", ") + title_of(resolved(branch));
   }
   if (fits == 0 && meant.size() == 1) {
     check(*meant.front(), value, path, violations);
     return;
   }
-  violations.push_back(
-      {path, label_of(path) + " = " + shown(value) + ": must be exactly one of " + titles});
+  violations.push_back({path,
+                        label_of(path) + " = " + shown(value) + ": must be exactly one of " +
+                            titles + unknown_text(branches, value)});
+}
+
+std::string JsonSchema::unknown_text(const Json& branches, const Json& value) const {
+  if (!value.is_object()) return "";
+  std::string names;
+  for (const auto& [key, unused] : value.items()) {
+    const bool known = std::any_of(branches.begin(), branches.end(), [&](const Json& branch) {
+      return keyword(resolved(branch), "properties").contains(key);
+    });
+    if (!known) names += (names.empty() ? "" : ", ") + key;
+  }
+  return names.empty() ? "" : " (unknown: " + names + ")";
 }
 
 void JsonSchema::apply_defaults(Json& document) const { apply_defaults(schema_, document); }

@@ -47,6 +47,9 @@ class JsonSchema {
                     const nlohmann::json& value,
                     const std::string& path,
                     std::vector<SchemaViolation>& violations) const;
+  /// Names the fields of a value that no branch of its `oneOf` has; empty if there are none.
+  [[nodiscard]] std::string unknown_text(const nlohmann::json& branches,
+                                         const nlohmann::json& value) const;
   [[nodiscard]] bool matches(const nlohmann::json& node, const nlohmann::json& value) const;
   [[nodiscard]] bool looks_meant(const nlohmann::json& branch, const nlohmann::json& value) const;
   void apply_defaults(const nlohmann::json& node, nlohmann::json& value) const;

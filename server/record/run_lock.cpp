@@ -16,9 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Locked by flock(2).
-fs::path lock_file(const fs::path& folder) { return folder / ".running"; }
-
 /// Whether the file is still in its folder: its holder removes it before it lets go.
 bool is_linked(int descriptor) {
   struct stat status {};
@@ -27,11 +24,13 @@ bool is_linked(int descriptor) {
 
 }  // namespace
 
+fs::path RunLock::file_of(const fs::path& folder) { return folder / ".running"; }
+
 Result<RunLock> RunLock::take(const fs::path& folder) {
   // held() has the lock for a moment: who asks must not be taken for who works.
   constexpr int kAttempts = 20;
   constexpr auto kPause = std::chrono::milliseconds(5);
-  const fs::path file = lock_file(folder);
+  const fs::path file = file_of(folder);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (attempt > 0) std::this_thread::sleep_for(kPause);
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -47,7 +46,7 @@ Result<RunLock> RunLock::take(const fs::path& folder) {
 }
 
 bool RunLock::held(const fs::path& folder) {
-  const int descriptor = ::open(lock_file(folder).c_str(), O_RDWR | O_CLOEXEC);
+  const int descriptor = ::open(file_of(folder).c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return false;
   const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(descriptor);

@@ -14,6 +14,8 @@ class RunLock {
   static Result<RunLock> take(const std::filesystem::path& folder);
   /// True while a process (including this one) holds the lock.
   [[nodiscard]] static bool held(const std::filesystem::path& folder);
+  /// The file of a run folder that is locked, by flock(2).
+  [[nodiscard]] static std::filesystem::path file_of(const std::filesystem::path& folder);
   ~RunLock();  ///< releases and removes the file
   RunLock(RunLock&& other) noexcept;
   RunLock& operator=(RunLock&& other) noexcept;

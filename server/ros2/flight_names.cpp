@@ -37,17 +37,21 @@ std::string optical_frame(const std::string& part) { return part + "_optical_fra
 /// Half a turn about x.
 Eigen::Quaterniond R_body_base() { return {0.0, 1.0, 0.0, 0.0}; }
 
-std::vector<RosMount> ros_mounts(const Pose& T_body_camera, const std::string& camera_frame) {
+std::vector<RosMount> ros_mounts(const Pose& T_body_camera,
+                                 const std::string& camera_frame,
+                                 bool with_sensors) {
   const Pose T_camera_body = T_body_camera.inverse();
+  std::vector<RosMount> mounts = {{ros1::kBodyFrame,
+                                   camera_frame,
+                                   T_camera_body * Pose{R_body_base(), Eigen::Vector3d::Zero()}}};
+  if (!with_sensors) return mounts;
   // Columns are the range sensor's axes in base_link: x down, y left, z forward.
   Eigen::Matrix3d R_base_range;
   R_base_range << 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0;
-  return {{ros1::kBodyFrame,
-           camera_frame,
-           T_camera_body * Pose{R_body_base(), Eigen::Vector3d::Zero()}},
-          {ros1::kRangeFrame,
-           ros1::kBodyFrame,
-           Pose{Eigen::Quaterniond(R_base_range), Eigen::Vector3d::Zero()}}};
+  mounts.push_back({ros1::kRangeFrame,
+                    ros1::kBodyFrame,
+                    Pose{Eigen::Quaterniond(R_base_range), Eigen::Vector3d::Zero()}});
+  return mounts;
 }
 
 }  // namespace overfly::server

@@ -24,10 +24,12 @@ struct RosMount {
   std::string parent_frame;
   Pose T_parent_child;
 };
-/// Where the sensors of the samples are: the body (base_link) as seen from the first camera, whose
-/// pose is on /tf, and the range sensor (range_link). They connect the frames of middleware's
+/// Where the body (base_link) is as seen from the first camera, whose pose is on /tf, and where the
+/// range sensor of the samples is (range_link). They connect the frames of middleware's
 /// frame_names.hpp to one tree. The mount is the nominal one, without vibration.
+/// @param with_sensors  false: only the body
 [[nodiscard]] std::vector<RosMount> ros_mounts(const Pose& T_body_camera,
-                                               const std::string& camera_frame);
+                                               const std::string& camera_frame,
+                                               bool with_sensors);
 
 }  // namespace overfly::server

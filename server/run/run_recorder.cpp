@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/files/build_info.hpp"
+#include "server/files/file_stamp.hpp"
 #include "server/files/jpeg.hpp"
 #include "server/files/png_file.hpp"
 #include "server/record/rows/vehicle_rows.hpp"
@@ -24,11 +25,19 @@ using Json = nlohmann::json;
 /// Close to lossless: estimators may be run again on these images.
 constexpr int kFrameQuality = 95;
 
-Status make_empty_folder(const fs::path& folder) {
+/// Whether a run failed before its first frame: it has nothing to be kept.
+bool failed_at_start(const fs::path& folder) {
+  const Result<RunInfo> info = read_run_info(folder);
+  return info && info->status == RunStatus::kFailed && info->frames == 0;
+}
+
+/// Creates the folder unless it is empty, or contains only a run that failed at its start.
+Status make_free_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
   if (fs::exists(fs::symlink_status(manifest_file(folder), failure))) {
+    if (failed_at_start(folder)) return {};
     return Error{ErrorCode::kConflict, folder.string() + ": already contains a run"};
   }
   if (!fs::is_empty(folder, failure) || failure) {
@@ -37,12 +46,12 @@ Status make_empty_folder(const fs::path& folder) {
   return {};
 }
 
-/// Of a folder that was empty: a run that cannot begin leaves nothing that looks like one.
+/// Of a run that could not begin. Its lock stays.
 void remove_contents(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(manifest_file(folder), ignored);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    fs::remove_all(entry.path(), ignored);
+    if (entry.path() != RunLock::file_of(folder)) fs::remove_all(entry.path(), ignored);
   }
 }
 
@@ -91,14 +100,15 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
                                                          const Scenario& scenario,
                                                          std::shared_ptr<RunTimeline> timeline,
                                                          bool publish_images) {
-  if (Status status = make_empty_folder(folder); !status) return status.error();
+  if (Status status = make_free_folder(folder); !status) return status.error();
+  const FileStamp checked = FileStamp::of(manifest_file(folder));
   Result<RunLock> lock = RunLock::take(folder);
   if (!lock) return lock.error();
   // Another process may have used the folder between the check and the lock.
-  std::error_code ignored;
-  if (fs::exists(manifest_file(folder), ignored)) {
+  if (FileStamp::of(manifest_file(folder)) != checked) {
     return Error{ErrorCode::kConflict, folder.string() + ": already contains a run"};
   }
+  if (checked.exists) remove_contents(folder);
   std::unique_ptr<RunRecorder> recorder(new RunRecorder(folder, std::move(lock).value(), scenario));
   RunInfo& info = recorder->info_;
   if (timeline) info = timeline->info();

@@ -21,6 +21,7 @@ RunInfo queued_info(const std::string& id, const Scenario& scenario) {
   info.title = scenario.title;
   info.created_utc = utc_text(utc_now_ns());
   info.pacing = to_string(scenario.pacing);
+  info.seed = scenario.seed;
   for (const CameraSpec& camera : scenario.cameras) info.cameras.push_back(camera.name);
   for (const EstimatorSpec& estimator : scenario.estimators) {
     info.estimators.push_back(estimator.name);

@@ -18,6 +18,8 @@ double median_of(std::vector<double> values) {
 /// Below this number of linear texels per pixel the imagery, not the camera, limits the result.
 constexpr double kTextureLimit = 0.5;
 
+constexpr double kMostlyVoid = 0.5;
+
 TextureMetrics texture_of(const std::vector<FrameRow>& frames) {
   TextureMetrics texture;
   std::vector<double> medians;
@@ -57,6 +59,7 @@ CameraMetrics camera_metrics_from(const CameraRecords& camera) {
   for (const FrameRow& row : camera.frames) {
     void_sum += row.void_fraction;
     metrics.void_fraction_max = std::max(metrics.void_fraction_max, row.void_fraction);
+    metrics.mostly_void_frames += row.void_fraction > kMostlyVoid ? 1 : 0;
     metrics.late_tiles += row.late_tiles;
     metrics.frames_with_late_tiles += row.late_tiles > 0 ? 1 : 0;
     for (const std::string& kind : row.faults) ++metrics.faults[kind];

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/time.hpp"
+#include "evaluation/long_steps.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server {
@@ -39,6 +40,24 @@ Status check_listed(const NamedTrajectory& trajectory) {
                    "its poses cannot be matched by number; add times to both files"};
 }
 
+std::string counted_poses(const NamedTrajectory& trajectory) {
+  return trajectory.name + " (" + std::to_string(trajectory.file.trajectory.size()) + " poses)";
+}
+
+/// For files that are matched by number only because one has no times.
+/// Errors: kInvalidArgument if their numbers of poses differ: the numbers then show no pairs.
+Status check_same_count(const NamedTrajectory& truth, const NamedTrajectory& estimate) {
+  if (truth.file.trajectory.size() == estimate.file.trajectory.size()) return {};
+  const NamedTrajectory& without = truth.file.has_times ? estimate : truth;
+  return Error{ErrorCode::kInvalidArgument,
+               counted_poses(truth) + " and " + counted_poses(estimate) +
+                   ": cannot be matched by number, because their numbers of poses differ, nor by "
+                   "time, because " +
+                   without.name +
+                   " has none; add times, or use association index (--association index) if pose "
+                   "i belongs to pose i"};
+}
+
 Result<evaluation::Options> options_for(const NamedTrajectory& truth,
                                         const NamedTrajectory& estimate,
                                         const FileScoreRequest& request) {
@@ -48,6 +67,9 @@ Result<evaluation::Options> options_for(const NamedTrajectory& truth,
   options.has_times = truth.file.has_times;
   if (!truth.file.has_times || !estimate.file.has_times) {
     options.association = evaluation::Association::kIndex;
+    if (request.association != evaluation::Association::kIndex) {
+      if (Status same = check_same_count(truth, estimate); !same) return same.error();
+    }
   }
   options.max_time_difference_ns = request.max_time_difference_ns;
   const auto depth = comment_number(estimate, "init_true_depth");
@@ -77,6 +99,48 @@ Result<EstimateTrack> track_from(const NamedTrajectory& estimate) {
     track.samples.push_back(sample);
   }
   return track;
+}
+
+/// The truth with its long steps as gaps, and what was found.
+struct SplitTruth {
+  evaluation::LongSteps steps;
+  std::optional<Trajectory> with_gaps;  ///< empty if it has no long steps
+};
+
+SplitTruth split_truth(const Trajectory& truth) {
+  SplitTruth split{evaluation::long_steps(truth), std::nullopt};
+  if (!split.steps.ending.empty()) split.with_gaps = evaluation::with_gaps_in(split.steps, truth);
+  return split;
+}
+
+/// Remarks on a truth and an estimate that were matched.
+std::vector<std::string> warnings_of(const NamedTrajectory& truth,
+                                     const NamedTrajectory& estimate,
+                                     const SplitTruth& split,
+                                     evaluation::Association association) {
+  std::vector<std::string> warnings = estimate.file.warnings;
+  const bool of_body = truth.file.format == TrajectoryFormat::kEuroc;
+  if (of_body != (estimate.file.format == TrajectoryFormat::kEuroc)) {
+    const NamedTrajectory& body = of_body ? truth : estimate;
+    const NamedTrajectory& other = of_body ? estimate : truth;
+    warnings.push_back(body.name +
+                       ": files of the EuRoC format have the poses of the body, that "
+                       "is, of the IMU: those of " +
+                       other.name +
+                       " must be of the body too, "
+                       "because nothing is converted here (overfly track converts them)");
+  }
+  if (!split.with_gaps || association != evaluation::Association::kInterpolate) return warnings;
+  const std::vector<StampedPose>& poses = estimate.file.trajectory.poses();
+  const auto left_out = std::count_if(poses.begin(), poses.end(), [&](const StampedPose& pose) {
+    return truth.file.trajectory.at(pose.t_ns) && !split.with_gaps->at(pose.t_ns);
+  });
+  if (left_out > 0) {
+    warnings.push_back(std::to_string(left_out) + " poses of " + estimate.name +
+                       " have no truth in " + truth.name + ": " +
+                       evaluation::words_for(split.steps));
+  }
+  return warnings;
 }
 
 /// Keeps only the requested modes.
@@ -128,14 +192,20 @@ Result<FileScore> score_file(const NamedTrajectory& truth,
   if (!options) return options.error();
   const Result<EstimateTrack> track = track_from(estimate);
   if (!track) return track.error();
-  const Trajectory& true_poses = truth.file.trajectory;
+  const SplitTruth split = split_truth(truth.file.trajectory);
+  const Trajectory& true_poses = split.with_gaps ? *split.with_gaps : truth.file.trajectory;
   FileScore result;
   result.name = estimate.name;
   result.poses = track->samples.size();
-  result.warnings = estimate.file.warnings;
+  result.association = options->association;
+  result.warnings = warnings_of(truth, estimate, split, options->association);
   // Called first, because its error explains why nothing could be matched.
   auto matches = evaluation::associate(true_poses, *track, *options);
-  if (!matches) return matches.error().in(estimate.name);
+  if (!matches) {
+    Error error = matches.error().in(estimate.name);
+    if (split.with_gaps) error.message += "; of the truth, " + evaluation::words_for(split.steps);
+    return error;
+  }
   result.matches = std::move(*matches);
   if (!result.matches.empty()) {
     result.truth_path_m =
@@ -172,6 +242,7 @@ Json json_from(const FileScore& score) {
   Json json = {
       {"poses", score.poses},
       {"matched", score.matches.size()},
+      {"association", evaluation::to_string(score.association)},
       {"warnings", score.warnings},
       {"truth_path_m", score.truth_path_m},
       {"diverged_at_s",

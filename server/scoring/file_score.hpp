@@ -37,8 +37,10 @@ struct NamedTrajectory {
 struct FileScore {
   std::string name;
   std::size_t poses = 0;
-  std::vector<std::string> warnings;  ///< of reading the file
-  double truth_path_m = 0.0;          ///< length of the truth from the first match to the last
+  evaluation::Association association = evaluation::Association::kInterpolate;  ///< as used
+  std::vector<std::string> warnings;  ///< of reading the file, and of what the scores assume
+  /// Length of the truth from the first match to the last; gaps count as straight lines.
+  double truth_path_m = 0.0;
   std::vector<evaluation::MatchedPose> matches;
   evaluation::Score score;
   /// Position errors in the axes of the path, one for each match.
@@ -46,14 +48,17 @@ struct FileScore {
   std::optional<evaluation::Offsets> offsets;  ///< if they were asked for
 };
 
-/// Poses without times are matched by number, whatever association is asked for.
+/// Poses without times are matched by number, whatever association is asked for. Long steps of the
+/// truth (evaluation/long_steps.hpp) are gaps.
 /// Errors: kUnreadable for a comment that is no positive number; kInvalidArgument if nothing can be
-/// matched, and for poses that cannot be matched by number.
+/// matched, and for poses that cannot be matched by number: among them those of files with
+/// different numbers of poses, unless kIndex is asked for.
 [[nodiscard]] Result<FileScore> score_file(const NamedTrajectory& truth,
                                            const NamedTrajectory& estimate,
                                            const FileScoreRequest& request);
 
-/// {"poses", "matched", "warnings", "alignments", "unavailable", ...} (docs/PROTOCOL.md).
+/// {"poses", "matched", "association", "warnings", "alignments", "unavailable", ...}
+/// (docs/PROTOCOL.md).
 [[nodiscard]] nlohmann::json json_from(const FileScore& score);
 
 }  // namespace overfly::server

@@ -33,6 +33,7 @@ struct CameraMetrics {
   TextureMetrics texture;
   double void_fraction_mean = 0.0;
   double void_fraction_max = 0.0;
+  std::int64_t mostly_void_frames = 0;  ///< more than half of the image is without imagery
   std::int64_t late_tiles = 0;
   std::int64_t frames_with_late_tiles = 0;
   std::map<std::string, std::int64_t> faults;  ///< number of affected frames by kind

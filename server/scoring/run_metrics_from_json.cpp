@@ -90,6 +90,7 @@ CameraMetrics read_camera_metrics(const FileField& field, const std::optional<Fi
     take(*fraction, "mean", camera.void_fraction_mean);
     take(*fraction, "max", camera.void_fraction_max);
   }
+  take(field, "mostly_void_frames", camera.mostly_void_frames);
   if (const auto late = field.find("late_tiles")) {
     take(*late, "tiles", camera.late_tiles);
     take(*late, "frames", camera.frames_with_late_tiles);

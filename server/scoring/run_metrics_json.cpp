@@ -42,6 +42,7 @@ Json camera_metrics_json(const CameraMetrics& camera) {
        {{"min", camera.texture.texels_per_pixel_min},
         {"median", camera.texture.texels_per_pixel_median}}},
       {"void_fraction", {{"mean", camera.void_fraction_mean}, {"max", camera.void_fraction_max}}}};
+  if (camera.mostly_void_frames != 0) value["mostly_void_frames"] = camera.mostly_void_frames;
   if (camera.late_tiles != 0) {
     value["late_tiles"] = {{"tiles", camera.late_tiles}, {"frames", camera.frames_with_late_tiles}};
   }

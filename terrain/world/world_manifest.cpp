@@ -261,9 +261,12 @@ fs::path cache_folder_of(const fs::path& manifest) {
 
 Status write_world_manifest(const fs::path& manifest, const WorldSpec& spec) {
   const fs::path part = manifest.string() + ".part";
+  const std::string text = to_json(spec, manifest.parent_path()).dump(2) + '\n';
+  const Result<std::string> there = read_file_text(manifest, text.size());
+  if (there && *there == text) return {};
   {
     std::ofstream out(part, std::ios::binary);
-    out << to_json(spec, manifest.parent_path()).dump(2) << '\n';
+    out << text;
     if (!out.flush()) {
       return Error{ErrorCode::kIo, manifest.string() + ": cannot be written"};
     }

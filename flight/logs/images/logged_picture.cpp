@@ -84,7 +84,7 @@ std::optional<LoggedPicture> picture_in(PictureMessage kind,
   if (kind == PictureMessage::kLcm) return lcm_picture(message);
   std::optional<RosCursor> fields = ros_cursor_of(message, encoding);
   if (!fields) return std::nullopt;
-  (void)take_stamp(*fields);
+  (void)take_header(*fields);
   LoggedPicture picture;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -116,7 +116,7 @@ std::optional<std::int64_t> picture_stamp_ns(PictureMessage kind,
   }
   std::optional<RosCursor> fields = ros_cursor_of(message, encoding);
   if (!fields) return std::nullopt;
-  const std::int64_t stamp_ns = take_stamp(*fields);
+  const std::int64_t stamp_ns = take_header(*fields).stamp_ns;
   if (!fields->ok() || stamp_ns < 0 || stamp_ns > kLatestNs) return std::nullopt;
   return stamp_ns;
 }

@@ -93,7 +93,7 @@ class StampCheck final : public RosMessageSink {
     if (type.type == RosType::kOther) return;
     std::optional<RosCursor> message = ros_cursor_of(data, type.encoding);
     if (!message) return;
-    const std::int64_t stamp_ns = take_stamp(*message);
+    const std::int64_t stamp_ns = take_header(*message).stamp_ns;
     if (!message->ok()) return;
     constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     const bool near = recorded_ns <= kMost && stamp_ns >= 0 &&

@@ -34,22 +34,9 @@ constexpr RosTypeFacts kRosTypes[] = {
     {"sensor_msgs", "CompressedImage", RosType::kCompressedImage, PositionKind::kNone, false, 0},
 };
 
-struct RosHeader {
-  std::int64_t stamp_ns = 0;
-  std::string_view frame_id;
-};
-
-RosHeader take_header(RosCursor& message) {
-  RosHeader header;
-  if (message.encoding() == RosEncoding::kRos1) {
-    (void)message.number<std::uint32_t>();  // seq
-    header.stamp_ns = std::int64_t{message.number<std::uint32_t>()} * kNsPerS;
-  } else {
-    header.stamp_ns = std::int64_t{message.number<std::int32_t>()} * kNsPerS;
-  }
-  header.stamp_ns += message.number<std::uint32_t>();
-  header.frame_id = message.text();
-  return header;
+/// REP-103.
+bool is_optical_frame(std::string_view frame) {
+  return frame.ends_with("_optical_frame") || frame.ends_with("_optical");
 }
 
 Eigen::Vector3d take_vector(RosCursor& message) {
@@ -156,6 +143,7 @@ std::optional<RosSample> decode_ros(RosType type, RosCursor message, const RosTo
       break;
     case RosType::kOdometry: {
       const std::string_view child_frame_id = message.text();
+      if (is_optical_frame(child_frame_id)) sample.camera_frame = child_frame_id;
       take_pose(message, header.frame_id, child_frame_id, sample);
       break;
     }
@@ -195,6 +183,17 @@ std::optional<RosCursor> ros_cursor_of(std::span<const std::uint8_t> data, RosEn
   return RosCursor(data.subspan(kCdrHeaderBytes), encoding, data[1] == 0);
 }
 
-std::int64_t take_stamp(RosCursor& message) { return take_header(message).stamp_ns; }
+RosHeader take_header(RosCursor& message) {
+  RosHeader header;
+  if (message.encoding() == RosEncoding::kRos1) {
+    (void)message.number<std::uint32_t>();  // seq
+    header.stamp_ns = std::int64_t{message.number<std::uint32_t>()} * kNsPerS;
+  } else {
+    header.stamp_ns = std::int64_t{message.number<std::int32_t>()} * kNsPerS;
+  }
+  header.stamp_ns += message.number<std::uint32_t>();
+  header.frame_id = message.text();
+  return header;
+}
 
 }  // namespace overfly::flight::logs

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/sensors/sensor_samples.hpp"
@@ -45,7 +46,10 @@ struct RosSample {
   /// [m].
   std::optional<Eigen::Vector3d> position;
   std::optional<Eigen::Quaterniond> R_ned_body;  ///< not normalised
-  bool invalid = false;                          ///< the sender marks the sample as invalid: no fix
+  /// The frame of the camera whose pose it is: its axes were read as those of a body
+  /// forward-left-up. Empty: the pose of a body.
+  std::string camera_frame;
+  bool invalid = false;  ///< the sender marks the sample as invalid: no fix
   SensorSamples sensors;
 };
 
@@ -61,7 +65,8 @@ struct RosTopicName {
 ///
 /// Frames are those of REP-103: a world east-north-up, a body forward-left-up. A frame_id that ends
 /// with "ned" is a world north-east-down, a frame of the body that ends with "frd" is
-/// forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of Imu.
+/// forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of Imu. An
+/// Odometry whose child_frame_id is an optical frame has the pose of that camera (camera_frame).
 /// An Imu without orientation (orientation_covariance[0] = -1) gives neither. Samples of sensors
 /// are those of ros_sensors.hpp.
 /// @return empty if the message ends early, or the type is kOther
@@ -73,7 +78,12 @@ struct RosTopicName {
 /// @return empty for other representations than plain CDR, and for kOther
 [[nodiscard]] std::optional<RosCursor> ros_cursor_of(std::span<const std::uint8_t> data,
                                                      RosEncoding encoding);
-/// Moves behind the header. @return header.stamp
-[[nodiscard]] std::int64_t take_stamp(RosCursor& message);
+
+struct RosHeader {
+  std::int64_t stamp_ns = 0;
+  std::string_view frame_id;
+};
+/// Moves behind the header.
+[[nodiscard]] RosHeader take_header(RosCursor& message);
 
 }  // namespace overfly::flight::logs

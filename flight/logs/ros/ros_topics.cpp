@@ -73,8 +73,11 @@ std::optional<RosTopics::Topic> RosTopics::add(const std::string& name,
   Stream stream;
   stream.encoding = encoding;
   if (encoding != RosEncoding::kOther) stream.type = ros_type_named(type);
+  stream.topic = topic_text(name);
   stream.name = ros_topic_name(name);
-  StreamDescription description = describe_topic(topic_text(name), stream.type);
+  stream.transforms = encoding != RosEncoding::kOther && is_transform_type(type);
+  if (stream.type == RosType::kPoseStamped) stream.camera_frame = camera_frame_of(name);
+  StreamDescription description = describe_topic(stream.topic, stream.type);
   stream.sensors = description.sensors;
   if (stream.type == RosType::kOther) description.vehicle = "recording";
   stream.wanted = sink_.stream(static_cast<StreamId>(streams_.size()), description);
@@ -101,9 +104,23 @@ std::optional<RosSample> RosTopics::decode(const Stream& stream,
   }
   std::optional<RosSample> sample =
       decode_ros(stream.type, RosCursor(data, stream.encoding, big_endian), stream.name);
-  if (!sample) ++short_messages_;
-  if (sample) set_delivery(recorded_ns, sample->sensors);
+  if (!sample) {
+    ++short_messages_;
+    return sample;
+  }
+  if (!sample->camera_frame.empty()) frames_.see(sample->camera_frame);
+  if (!stream.camera_frame.empty()) sample->camera_frame = stream.camera_frame;
+  set_delivery(recorded_ns, sample->sensors);
   return sample;
+}
+
+/// The frames that an image or a message of transforms names.
+void RosTopics::take_frames(const Stream& stream, std::span<const std::uint8_t> data) {
+  std::optional<RosCursor> message = ros_cursor_of(data, stream.encoding);
+  if (!message) return;
+  if (stream.transforms) return frames_.take(*message);
+  const std::string_view frame = take_header(*message).frame_id;
+  if (message->ok()) frames_.see(frame);
 }
 
 void RosTopics::take(Topic topic,
@@ -111,6 +128,8 @@ void RosTopics::take(Topic topic,
                      std::uint64_t recorded_ns,
                      const MessagePlace& /*place*/) {
   Stream& stream = streams_[topic];
+  const bool is_image = stream.type == RosType::kImage || stream.type == RosType::kCompressedImage;
+  if (is_image || stream.transforms) take_frames(stream, data);
   if (stream.type == RosType::kOther) {
     constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     const auto t_ns = recorded_ns <= kMost ? static_cast<std::int64_t>(recorded_ns) : -1;
@@ -145,9 +164,29 @@ void RosTopics::pass_held(Topic topic) {
 void RosTopics::pass(Topic topic,
                      const std::optional<LogTime>& time,
                      const std::optional<RosSample>& sample) {
+  CameraPoses& poses = streams_[topic].camera_poses;
+  if (poses.must_hold(sample, frames_)) {
+    sink_.declaration();
+    poses.hold(time, sample);
+    return;
+  }
+  deliver_held(topic);
+  deliver(topic, time, sample);
+}
+
+void RosTopics::deliver_held(Topic topic) {
+  for (auto& [time, sample] : streams_[topic].camera_poses.take_held()) {
+    deliver(topic, time, std::move(sample));
+  }
+}
+
+void RosTopics::deliver(Topic topic,
+                        const std::optional<LogTime>& time,
+                        std::optional<RosSample> sample) {
   const auto id = static_cast<StreamId>(topic);
   sink_.message(id, time);
-  const Stream& stream = streams_[topic];
+  Stream& stream = streams_[topic];
+  if (sample) stream.camera_poses.convert(*sample, frames_);
   if (!stream.wanted || !time || !sample) return;
   if (stream.sensors) {
     const std::size_t preference = (stream.name.is_raw ? 0 : kMaxRosTopics) + topic;
@@ -159,7 +198,10 @@ void RosTopics::pass(Topic topic,
 }
 
 void RosTopics::report() {
-  for (Topic topic = 0; topic < streams_.size(); ++topic) pass_held(topic);
+  for (Topic topic = 0; topic < streams_.size(); ++topic) {
+    pass_held(topic);
+    deliver_held(topic);
+  }
   const auto warn = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) sink_.warning(std::to_string(count) + " " + text);
   };
@@ -174,6 +216,13 @@ void RosTopics::report() {
   warn(short_messages_, "messages are shorter than their type and were left out");
   warn(left_out_topics_,
        "declarations of topics were left out: only " + std::to_string(kMaxRosTopics) + " are read");
+  for (const Stream& stream : streams_) {
+    const std::string& camera = stream.camera_poses.assumed_camera();
+    if (camera.empty()) continue;
+    sink_.warning(stream.topic + " has the poses of the camera " + camera +
+                  ", and no transform between base_link and it states the camera's mount: it is "
+                  "taken to look down, with the top of its image to the nose");
+  }
   std::uint64_t implausible = 0;
   for (const Stream& stream : streams_) implausible += stream.clock.implausible();
   warn(implausible, "stamps of messages are implausible and were not used");

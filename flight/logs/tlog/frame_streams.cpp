@@ -52,21 +52,41 @@ void FrameStreams::take(const Frame& frame) {
   }
   const std::optional<std::int64_t> boot_ns = mavlink::boot_time_ns(frame);
   const std::optional<LogTime> time = boot_ns ? sender.clock.take(*boot_ns) : sender.clock.latest();
+  const auto suspicion = sender.clock.suspicion();
+  if (!suspicion) pass_doubtful(sender);
   if (sender.held.must_hold(sender.clock)) {
     sink_.declaration();
     sender.held.hold(time, {frame, {frame.payload.begin(), frame.payload.end()}});
     return;
   }
   pass_held(sender);
+  if (suspicion && !boot_ns) {
+    if (sender.doubtful.size() == kMostHeld) pass_doubtful(sender);
+    sink_.declaration();
+    sender.doubtful.push_back(
+        {{frame, {frame.payload.begin(), frame.payload.end()}}, time, *suspicion});
+    return;
+  }
   pass(frame, time, *stream, sender);
 }
 
 void FrameStreams::pass_held(Sender& sender) {
-  sender.held.release(sender.clock, [&](const auto& time, const HeldFrame& held) {
-    Frame frame = held.frame;
-    frame.payload = held.payload;
-    pass(frame, time, *stream_of(frame, sender), sender);
-  });
+  sender.held.release(sender.clock,
+                      [&](const auto& time, const HeldFrame& held) { pass(held, time, sender); });
+}
+
+void FrameStreams::pass(const HeldFrame& held, const std::optional<LogTime>& time, Sender& sender) {
+  Frame frame = held.frame;
+  frame.payload = held.payload;
+  pass(frame, time, *stream_of(frame, sender), sender);
+}
+
+void FrameStreams::pass_doubtful(Sender& sender) {
+  for (const DoubtfulFrame& doubtful : std::exchange(sender.doubtful, {})) {
+    const bool believed = doubtful.suspicion.number == sender.clock.believed_suspicion();
+    const LogTime in_its_run{sender.clock.latest()->boot, doubtful.suspicion.t_ns};
+    pass(doubtful.held, believed ? in_its_run : doubtful.time, sender);
+  }
 }
 
 void FrameStreams::pass(const Frame& frame,
@@ -164,6 +184,7 @@ void FrameStreams::take_events(const Frame& frame,
 void FrameStreams::report() {
   for (auto& [key, sender] : senders_) {
     pass_held(sender);
+    pass_doubtful(sender);
     pass_untimed_events(sender, std::nullopt);
   }
   const auto warn = [&](std::uint64_t count, const std::string& text) {

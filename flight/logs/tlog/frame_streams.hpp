@@ -18,6 +18,8 @@ namespace overfly::flight::logs {
 /// Passes what MAVLink messages contain to a sink, with the times of the vehicle's clock: those of
 /// the message, or of the latest message of the same component that has one. Events before a
 /// component's first time are held, and get that time: the vehicle was in that mode when it came.
+/// Messages without a time that come while stamps suggest that the clock has started again are held
+/// until these are believed or not: they belong to the run of the stamp in front of them.
 class FrameStreams {
  public:
   explicit FrameStreams(LogSink& sink) : sink_(sink) {}
@@ -40,11 +42,18 @@ class FrameStreams {
     mavlink::Frame frame;
     std::vector<std::uint8_t> payload;
   };
+  /// A message without a time, behind a stamp that may begin another run of the clock.
+  struct DoubtfulFrame {
+    HeldFrame held;
+    std::optional<LogTime> time;  ///< if the stamp was wrong
+    BootClock::Suspicion suspicion;
+  };
   /// A component of a system, with a clock of its own.
   struct Sender {
     std::string name;
     BootClock clock;
     HeldMessages<HeldFrame> held;
+    std::vector<DoubtfulFrame> doubtful;                            ///< at most kMostHeld
     std::vector<std::pair<EventKind, std::string>> untimed_events;  ///< before its first time
     std::optional<mavlink::Heartbeat> heartbeat;
     std::optional<std::uint16_t> mission_item;
@@ -59,6 +68,8 @@ class FrameStreams {
             const Stream& stream,
             Sender& sender);
   void pass_held(Sender& sender);
+  void pass(const HeldFrame& held, const std::optional<LogTime>& time, Sender& sender);
+  void pass_doubtful(Sender& sender);
   void pass_sensors(const mavlink::Frame& frame,
                     StreamId id,
                     const LogTime& time,

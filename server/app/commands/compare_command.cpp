@@ -71,7 +71,9 @@ int compare(const CompareArguments& arguments) {
   if (!arguments.junit.empty()) {
     const std::string xml = experiments::junit_from(judged);
     if (Status status = server::write_whole(arguments.junit, xml); !status) {
-      return report(status.error());
+      // Not kExitFailure, which says that a condition holds.
+      (void)report(status.error().in("--junit"));
+      return kExitUsage;
     }
   }
   return failed ? kExitFailure : kExitOk;

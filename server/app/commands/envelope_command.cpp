@@ -14,6 +14,7 @@
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/envelope/envelope.hpp"
+#include "server/experiments/sweep_folders.hpp"
 
 namespace overfly::app {
 namespace {
@@ -35,6 +36,9 @@ struct EnvelopeArguments {
 int envelope(const EnvelopeArguments& arguments) {
   const Result<experiments::Sweep> sweep = experiments::load_sweep(arguments.file);
   if (!sweep) return report(sweep.error());
+  if (Status status = experiments::check_sweep_folder(arguments.out); !status) {
+    return report(status.error().in("--out"));
+  }
   Result<experiments::Envelope> found = [&] {
     ProgressDisplay display(arguments.quiet);
     experiments::EnvelopeOptions options;

@@ -1,6 +1,7 @@
 // overfly evaluate: scores trajectory files, or scores a run folder again.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -79,8 +80,9 @@ std::string offsets_text(const evaluation::Offsets& offsets) {
   if (!offsets.clock && !offsets.mount)
     text << "  no offset of clock or mount explains the errors\n";
   if (const auto& clock = offsets.clock) {
-    text << "  clock: the estimate's times are " << s_from_ns(clock->offset_ns)
-         << " s early; this explains " << std::setprecision(1) << 100.0 * clock->explained
+    text << "  clock: the estimate's times are " << std::abs(s_from_ns(clock->offset_ns))
+         << (clock->offset_ns < 0 ? " s late" : " s early") << "; this explains "
+         << std::setprecision(1) << 100.0 * clock->explained
          << " % of the position error after sim3 (" << std::setprecision(3)
          << clock->position_rmse_before_m << " -> " << clock->position_rmse_after_m << " m)\n";
   }
@@ -96,26 +98,50 @@ std::string offsets_text(const evaluation::Offsets& offsets) {
   return text.str();
 }
 
+/// Scores one file and prints the result as people read it.
+Result<server::FileScore> evaluate_file(const EvaluateArguments& arguments,
+                                        const server::NamedTrajectory& truth,
+                                        const std::string& name) {
+  const Result<TrajectoryFile> file = read_trajectory(name);
+  if (!file) return file.error();
+  Result<server::FileScore> score =
+      server::score_file(truth, {name, *file}, request_from(arguments));
+  print_warnings(score ? score->warnings : file->warnings);
+  if (!score || arguments.json) return score;
+  std::cout << name << "\n" << alignment_table(score->score);
+  if (score->offsets) std::cout << offsets_text(*score->offsets);
+  return score;
+}
+
+Json entry_of(const std::string& name, const Result<server::FileScore>& score) {
+  if (!score) {
+    const Json error = {{"code", to_string(score.error().code)},
+                        {"message", score.error().message}};
+    return {{"file", name}, {"error", error}};
+  }
+  Json entry = server::json_from(*score);
+  entry["file"] = name;
+  return entry;
+}
+
+/// @return the exit code of the first file that cannot be scored; a failure if none of the
+/// alignments of a file can be determined
 int evaluate_files(const EvaluateArguments& arguments) {
   const Result<TrajectoryFile> truth = read_trajectory(arguments.truth);
   if (!truth) return report(truth.error());
   print_warnings(truth->warnings);
-  const server::NamedTrajectory named_truth{arguments.truth, *truth};
-  const server::FileScoreRequest request = request_from(arguments);
   Json estimates = Json::array();
+  int error_code = kExitOk;
   bool scored = true;
   for (const std::string& name : arguments.estimates) {
-    const Result<TrajectoryFile> file = read_trajectory(name);
-    if (!file) return report(file.error());
-    print_warnings(file->warnings);
-    const auto score = server::score_file(named_truth, {name, *file}, request);
-    if (!score) return report(score.error());
-    if (!arguments.json) std::cout << name << "\n" << alignment_table(score->score);
-    if (!arguments.json && score->offsets) std::cout << offsets_text(*score->offsets);
-    scored = scored && !score->score.alignments.empty();
-    Json entry = server::json_from(*score);
-    entry["file"] = name;
-    estimates.push_back(std::move(entry));
+    const auto score = evaluate_file(arguments, {arguments.truth, *truth}, name);
+    if (score) {
+      scored = scored && !score->score.alignments.empty();
+    } else {
+      const int code = report(score.error());
+      if (error_code == kExitOk) error_code = code;
+    }
+    if (arguments.json) estimates.push_back(entry_of(name, score));
   }
   if (arguments.json) {
     const Json result = {{"truth", arguments.truth},
@@ -124,6 +150,7 @@ int evaluate_files(const EvaluateArguments& arguments) {
                          {"estimates", std::move(estimates)}};
     std::cout << result.dump(2) << "\n";
   }
+  if (error_code != kExitOk) return error_code;
   return scored ? kExitOk : kExitFailure;
 }
 

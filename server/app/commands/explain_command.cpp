@@ -15,6 +15,7 @@
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/explain/explain_run.hpp"
+#include "server/experiments/explain/explained_run.hpp"
 #include "server/experiments/explain/explanation_json.hpp"
 #include "server/experiments/explain/explanation_page.hpp"
 #include "server/experiments/explain/explanation_words.hpp"
@@ -90,10 +91,23 @@ void print_explanation(const experiments::Explanation& explanation, const fs::pa
   std::cout << "\n" << (folder / "explanation.html").string() << "\n";
 }
 
+/// explained/RUN, or explained/RUN_ESTIMATOR of a run with several estimators: the explanation of
+/// one must not replace that of another. Errors: as read_explained_run.
+Result<fs::path> default_folder(const ExplainArguments& arguments, const fs::path& run) {
+  const auto explained =
+      experiments::read_explained_run(run, arguments.estimator, apply(arguments.files));
+  if (!explained) return explained.error();
+  const bool alone = explained->document.at("estimators").size() == 1;
+  return fs::path("explained") /
+         (server::folder_name(run) + (alone ? "" : "_" + explained->estimator_name));
+}
+
 int explain(const ExplainArguments& arguments) {
   const fs::path run = fs::absolute(arguments.run).lexically_normal();
-  const fs::path folder =
-      fs::absolute(arguments.out.empty() ? "explained/" + server::folder_name(run) : arguments.out);
+  const Result<fs::path> out =
+      arguments.out.empty() ? default_folder(arguments, run) : Result<fs::path>(arguments.out);
+  if (!out) return report(out.error());
+  const fs::path folder = fs::absolute(*out);
   Result<experiments::Explanation> explanation = [&] {
     ProgressDisplay display(arguments.quiet, arguments.progress);
     return experiments::explain_run(run, explain_options_from(arguments, folder, display));
@@ -131,7 +145,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--out",
                       arguments->out,
                       "Folder of the explanation; one that exists is continued. Default: "
-                      "explained/RUN");
+                      "explained/RUN, or explained/RUN_ESTIMATOR if the run has several");
   command->add_option("--estimator",
                       arguments->estimator,
                       "Estimator to be explained. Default: the first one that failed");

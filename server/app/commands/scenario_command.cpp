@@ -1,8 +1,10 @@
 // overfly scenario: lists, checks and prints scenarios.
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "server/app/commands/commands.hpp"
@@ -16,9 +18,13 @@ namespace overfly::app {
 namespace {
 
 int list(const std::string& folder) {
-  const auto entries =
-      server::list_scenarios(folder.empty() ? scenarios_folder() : std::filesystem::path(folder));
-  for (const server::ScenarioEntry& entry : entries) {
+  const std::filesystem::path listed =
+      folder.empty() ? scenarios_folder() : std::filesystem::path(folder);
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(listed, ignored)) {
+    return report({ErrorCode::kNotFound, listed.string() + ": no such folder"});
+  }
+  for (const server::ScenarioEntry& entry : server::list_scenarios(listed)) {
     std::cout << entry.name << ": " << entry.title << "\n";
     if (!entry.error.empty()) std::cout << "  cannot be flown here: " << entry.error << "\n";
   }

@@ -69,6 +69,16 @@ void log_line(const std::string& level, const std::string& text) {
   }
 }
 
+/// Names the runs that will not fly.
+void warn_of_waiting_runs(const server::RunList& list) {
+  std::string waiting;
+  for (const auto& run : list) {
+    if (run->status != server::RunStatus::kQueued) continue;
+    waiting += (waiting.empty() ? "" : ", ") + run->id + " (" + run->scenario + ")";
+  }
+  if (!waiting.empty()) spdlog::warn("these runs waited and will not fly: {}", waiting);
+}
+
 /// The token that clients must send; empty with --no-token.
 Result<std::string> token_of(const ServeArguments& arguments) {
   if (arguments.no_token) return std::string();
@@ -133,6 +143,7 @@ int serve(const ServeArguments& arguments) {
   std::cout << "Overfly is at " << (*server)->url() << std::endl;
   wait_for_stop_signal();
   spdlog::info("stopping: running flights are cancelled; their folders stay readable");
+  warn_of_waiting_runs((*runs)->runs());
   return kExitOk;
 }
 

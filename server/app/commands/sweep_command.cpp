@@ -22,6 +22,7 @@
 #include "server/experiments/jobs/folder_executor.hpp"
 #include "server/experiments/jobs/job_worker.hpp"
 #include "server/experiments/jobs/slurm_workers.hpp"
+#include "server/experiments/sweep_folders.hpp"
 #include "server/experiments/sweep_summary.hpp"
 #include "server/files/program_identity.hpp"
 #include "server/files/whole_file.hpp"
@@ -63,7 +64,9 @@ void show_sweep(ProgressDisplay& display, const experiments::SweepProgress& prog
       "flight " + std::to_string(progress.passed) + " of " + std::to_string(progress.most);
   if (progress.failed > 0) text += ", " + std::to_string(progress.failed) + " failed";
   if (progress.spent_s > 0.0) text += ", " + duration_words(progress.spent_s) + " flown";
-  if (progress.left_s > 0.0) text += ", about " + duration_words(progress.left_s) + " left";
+  if (progress.left_s.value_or(0.0) > 0.0) {
+    text += ", about " + duration_words(*progress.left_s) + " left";
+  }
   display.show(static_cast<double>(progress.passed) / static_cast<double>(progress.most), text);
 }
 
@@ -130,6 +133,9 @@ Result<experiments::FlownSweep> fly(const experiments::Sweep& sweep,
 }
 
 void print_sweep_plan(const experiments::FlownSweep& flown) {
+  for (const std::string& absent : flown.plan.absent_programs()) {
+    std::cerr << "warning: " << absent << "\n";
+  }
   const auto& progress = flown.progress;
   std::cout << counted(flown.plan.cells().size(), "cell") << ", "
             << counted(flown.plan.estimators().size(), "estimator") << ", at most "
@@ -209,6 +215,9 @@ std::string misuse(const CLI::App& command, const SweepArguments& arguments) {
 int sweep(const SweepArguments& arguments) {
   const Result<experiments::Sweep> sweep = experiments::load_sweep(arguments.file);
   if (!sweep) return report(sweep.error());
+  if (Status status = experiments::check_sweep_folder(arguments.out); !status) {
+    return report(status.error().in("--out"));
+  }
   const Result<experiments::FlownSweep> flown =
       arguments.dry_run ? experiments::read_sweep(*sweep, arguments.out) : fly(*sweep, arguments);
   if (!flown) return report(flown.error());

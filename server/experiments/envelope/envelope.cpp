@@ -113,7 +113,7 @@ void write_whole_progress(const Sweep& sweep, const fs::path& folder, const Swee
   SweepProgress progress = now;
   progress.passed = whole->progress.passed;
   progress.most = whole->progress.most;
-  progress.left_s = 0.0;
+  progress.left_s.reset();
   (void)write_progress(folder, progress);
 }
 

@@ -16,9 +16,10 @@ constexpr double kLeastReason = 0.2;
 constexpr std::size_t kMostStretches = 5;
 
 std::string short_number(double value) {
+  constexpr double kRoundsTo100 = 99.5;  // printed as 1e+02 with two digits
   char text[40];
   std::snprintf(text, sizeof text, "%.2g", value);
-  return value >= 100.0 ? std::to_string(static_cast<long>(value + 0.5)) : text;
+  return value >= kRoundsTo100 ? std::to_string(static_cast<long>(value + 0.5)) : text;
 }
 
 std::string seconds(double t_s) {

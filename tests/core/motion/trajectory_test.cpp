@@ -42,6 +42,18 @@ TEST(Trajectory, KnowsNoPoseInAGap) {
   EXPECT_EQ(trajectory.path_length_m(), 20.0);
 }
 
+TEST(Trajectory, MarksAGapLater) {
+  Trajectory trajectory =
+      Trajectory::from_poses({stamped(0, 0, 0), stamped(100, 10, 0), stamped(200, 30, 0)}).value();
+  trajectory.mark_gap_before(2);
+  EXPECT_FALSE(trajectory.has_gap_before(1));
+  EXPECT_TRUE(trajectory.has_gap_before(2));
+  EXPECT_TRUE(trajectory.at(50));
+  EXPECT_FALSE(trajectory.at(150));
+  EXPECT_TRUE(trajectory.at(200));
+  EXPECT_EQ(trajectory.path_length_m(), 10.0);
+}
+
 TEST(Trajectory, GivesTheStoredPoseAtItsStamp) {
   const Trajectory trajectory =
       Trajectory::from_poses({stamped(0, 1, 0), stamped(7, 2, 0.1), stamped(9, 5, 0.2)}).value();

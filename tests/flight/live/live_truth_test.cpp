@@ -104,6 +104,39 @@ TEST(LiveTruth, TakesLateAndDoubleMessagesInTheirOrder) {
   }
 }
 
+TEST(LiveTruth, ReportsJumpsOfPositions) {
+  OpenedTruth live;
+  ASSERT_NE(live.truth, nullptr);
+  const std::uint32_t before_ms = live.last_ms;
+  // 541 m in 40 ms, and back.
+  live.made->attitude(before_ms + 40);
+  live.made->position(before_ms + 40, before_ms + 40 + 21640);
+  live.last_ms = before_ms + 60;
+  live.fly_until(before_ms + 200);
+  ASSERT_TRUE(live.truth->state_at(live.flight_ns(before_ms + 100)).ok());
+  const std::vector<std::string> warnings = live.truth->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0],
+              HasSubstr("2 jumps of the vehicle's positions, the largest by 541 m at"));
+  EXPECT_THAT(warnings[0], HasSubstr("steps of more than 20 m and 150 m/s"));
+}
+
+/// Less than the two seconds that count as a restart.
+TEST(LiveTruth, ReportsWhatIsLeftOutOfAClockThatIsSetBack) {
+  OpenedTruth live;
+  ASSERT_NE(live.truth, nullptr);
+  const std::uint32_t begin_ms = live.last_ms;
+  live.fly_until(begin_ms + 2000);
+  ASSERT_TRUE(live.truth->state_at(live.flight_ns(begin_ms + 2000)).ok());
+  live.last_ms -= 1000;
+  live.fly_until(begin_ms + 2200);
+  ASSERT_TRUE(live.truth->state_at(live.flight_ns(begin_ms + 2200)).ok());
+  // Attitudes and positions of 49 instants; the fiftieth is the latest one.
+  EXPECT_THAT(live.truth->warnings(),
+              ElementsAre(HasSubstr("98 samples of the vehicle left out: earlier than the one "
+                                    "before, the furthest by 0.980 s at")));
+}
+
 TEST(LiveTruth, EndsWhenTheVehicleRestarts) {
   OpenedTruth live;
   ASSERT_NE(live.truth, nullptr);

@@ -57,10 +57,12 @@ class MadeVehicle {
     send(testing::frame_bytes(
         30, testing::attitude_payload(boot_ms, 0.0F, 0.0F, yaw_at(boot_ms)), sequence_++));
   }
-  void position(std::uint32_t boot_ms) {
+  void position(std::uint32_t boot_ms) { position(boot_ms, boot_ms); }
+  /// Where the vehicle is at another time.
+  void position(std::uint32_t boot_ms, std::uint32_t place_ms) {
     testing::Bytes payload;
     testing::put(payload, boot_ms);
-    testing::put(payload, lat_at(boot_ms));
+    testing::put(payload, lat_at(place_ms));
     testing::put(payload, static_cast<std::int32_t>(std::lround(kLon0 * 1e7)));
     for (const std::int32_t alt_mm : {600000, 300000}) testing::put(payload, alt_mm);
     for (const std::int16_t value : {2500, 0, 0, 0}) testing::put(payload, value);

@@ -114,6 +114,54 @@ TEST_F(TlogTest, GivesMessagesWithoutTimeTheVehiclesClock) {
   EXPECT_THAT(log->warnings, Contains(HasSubstr("received before the one in front")));
 }
 
+/// A level aircraft. @param lat  [1e-7 deg]
+Bytes sim_state_payload(std::int32_t lat) {
+  Bytes sim;
+  for (int i = 0; i < 21; ++i) put(sim, i == 0 ? 1.0F : 0.0F);
+  const float alt_m = 600.0F;
+  std::memcpy(sim.data() + 60, &alt_m, sizeof alt_m);
+  put(sim, lat);
+  put(sim, std::int32_t{80000000});
+  return sim;
+}
+
+/// Three stamps prove a restart: what has no time and comes between them belongs to the new run.
+TEST_F(TlogTest, GivesMessagesWithoutTimeToTheRunThatIsProven) {
+  const auto fly = [&](int count, std::uint32_t from_ms, std::int32_t from_lat) {
+    for (int i = 0; i < count; ++i) {
+      add_attitude(from_ms + 100 * static_cast<std::uint32_t>(i), 100 * i);
+      add(108, sim_state_payload(from_lat + 90 * i), 100 * i);
+    }
+  };
+  fly(40, 500000, 470000000);
+  fly(20, 2000, 471000000);  // 11 km away
+  const auto log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const StreamInfo& sim = log->streams[log->truth->position];
+  EXPECT_EQ(sim.description.name, "1.1/SIM_STATE");
+  EXPECT_EQ(sim.jumps, 0U);
+  EXPECT_THAT(log->boots, ::testing::SizeIs(2));
+  const auto trajectory = read_log_trajectory(*log, {});
+  ASSERT_TRUE(trajectory.ok()) << trajectory.error().message;
+  ASSERT_EQ(trajectory->poses.size(), 40U);
+  EXPECT_NEAR(trajectory->poses.back().position.x(), 47.0 + 39 * 90e-7, 1e-9);
+}
+
+/// A damaged stamp is no restart: what follows it keeps the time in front of it.
+TEST_F(TlogTest, KeepsMessagesWithoutTimeBehindADamagedStamp) {
+  for (int i = 0; i < 40; ++i) {
+    add_attitude(i == 20 ? 7 : 500000 + 100 * static_cast<std::uint32_t>(i), 100 * i);
+    add(108, sim_state_payload(470000000 + 90 * i), 100 * i);
+  }
+  const auto log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const StreamInfo& sim = log->streams[log->truth->position];
+  EXPECT_EQ(sim.messages, 40U);
+  EXPECT_EQ(sim.first_ns, 500'000'000'000);
+  EXPECT_EQ(sim.last_ns, 503'900'000'000);
+  EXPECT_EQ(log->boots.size(), 1U);
+}
+
 TEST_F(TlogTest, SeparatesRestartsOfTheClock) {
   for (std::uint32_t i = 0; i < 30; ++i) {
     add_attitude(500000 + 100 * i, static_cast<int>(100 * i));

@@ -29,13 +29,13 @@ class CsvFlight {
     Eigen::Quaterniond R_ned_body;
   };
 
-  /// @param erratic  the position at 150 s lies 0.001 deg further north
-  explicit CsvFlight(bool erratic = false) {
+  /// @param erratic  the position at 150 s lies further north
+  explicit CsvFlight(bool erratic = false, double erratic_deg = 0.001) {
     std::string gps = "t,lat,lon,alt\n";
     for (int i = 0; i <= 450; ++i) {
       const double t_s = 100.0 + 0.2 * i;
       const Row at = row(t_s);
-      const double off_deg = erratic && i == 250 ? 0.001 : 0.0;
+      const double off_deg = erratic && i == 250 ? erratic_deg : 0.0;
       gps += number_text(t_s) + ',' + number_text(at.lat_deg + off_deg) + ',' +
              number_text(at.lon_deg) + ',' + number_text(at.alt_msl_m) + '\n';
     }

@@ -180,6 +180,29 @@ TEST(LoggedFlight, ReportsJumpsAsWarnings) {
   EXPECT_EQ(flight->description(), "log: log.json, GPS with the attitude of ATT, smoothed");
 }
 
+TEST(LoggedFlight, NamesAPositionThatIsDamaged) {
+  for (const double off_deg : {0.1, 20.0}) {
+    const testing::CsvFlight log(true, off_deg);
+    LogFlightOptions options;
+    const auto flown = [&] {
+      return fly_flight_log(log.mapping(), options, log.frame(), Slope(), {});
+    };
+    const auto flight = flown();
+    EXPECT_EQ(flight.ok(), off_deg < 1.0);
+    if (!flight) {
+      EXPECT_THAT(flight.error().message,
+                  HasSubstr("log.json: GPS: the position at 150.000000000 s of the vehicle's clock "
+                            "is 2"));
+      EXPECT_THAT(flight.error().message, HasSubstr(" km away from the middle of the flight"));
+    }
+    options.far_poses = true;
+    EXPECT_TRUE(flown().ok());
+    options.far_poses = false;
+    options.smooth.emplace();
+    EXPECT_TRUE(flown().ok());
+  }
+}
+
 TEST(LoggedFlight, IsTakenFromFilesThatAreLogs) {
   const testing::CsvFlight log;
   EXPECT_TRUE(is_flight_log(log.mapping()));

@@ -135,6 +135,9 @@ TEST_F(LoggedSensors, OfASliceAndOfAMovedFlight) {
   EXPECT_TRUE(flown.samples.barometer.empty());
   EXPECT_TRUE(flown.samples.range.empty());
   EXPECT_FALSE(flown.samples.airspeed.empty());
+  EXPECT_THAT(flown.report,
+              HasSubstr("; not given: barometer, gps, magnetometer, range; logged, but left out "
+                        "because the flight is moved: barometer, gps, magnetometer, range"));
 }
 
 /// A value of the samples of a list, interpolated linearly at a time; empty outside.

@@ -12,6 +12,7 @@
 namespace overfly::testing {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -169,6 +170,154 @@ TEST_F(CommandLine, EvaluateReportsErrorsByAxisAndTheOffsetOfAClock) {
   const Json late = estimate_of("late.tum");
   EXPECT_NEAR(late.at("offsets").at("clock").at("time_offset_s").get<double>(), 0.7, 0.001);
   EXPECT_GT(late.at("alignments").at("none").at("horizontal_rmse_m").get<double>(), 10.0);
+
+  // For people without a sign.
+  write_text(path("delayed.tum"), weaving(-0.7, 0.0));
+  const auto shown = [&](const std::string& file) {
+    return overfly_program({"evaluate",
+                            "--truth",
+                            path("truth.tum"),
+                            "--estimate",
+                            path(file),
+                            "--find-offsets"})
+        .out;
+  };
+  EXPECT_THAT(shown("late.tum"), ContainsRegex("times are 0\\.[67][0-9]* s early; this explains"));
+  EXPECT_THAT(shown("delayed.tum"),
+              ContainsRegex("times are 0\\.[67][0-9]* s late; this explains"));
+}
+
+std::string wavy_line(int i) {
+  const double t_s = 0.1 * i;
+  return std::to_string(t_s) + " " + std::to_string(20.0 * t_s) + " " +
+         std::to_string(30.0 * std::sin(0.5 * t_s)) + " " + std::to_string(5.0 * std::cos(t_s)) +
+         " 0 0 0 1\n";
+}
+
+std::string wavy_lines(int count) {
+  std::string lines;
+  for (int i = 0; i < count; ++i) lines += wavy_line(i);
+  return lines;
+}
+
+TEST_F(CommandLine, EvaluateDoesNotInterpolateOverAHoleInTheTruth) {
+  std::string truth;
+  for (int i = 0; i < 300; ++i) {
+    if (i <= 100 || i >= 150) truth += wavy_line(i);
+  }
+  write_text(path("hole.tum"), truth);
+  write_text(path("whole.tum"), wavy_lines(300));
+  write_text(path("in_hole.tum"), wavy_line(110) + wavy_line(111) + wavy_line(112));
+  const auto evaluate = [&](const std::string& estimate) {
+    return overfly_program({"evaluate",
+                            "--truth",
+                            path("hole.tum"),
+                            "--estimate",
+                            path(estimate),
+                            "--alignment",
+                            "sim3",
+                            "--json"});
+  };
+  const Outcome scored = evaluate("whole.tum");
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json entry = Json::parse(scored.out).at("estimates").at(0);
+  const std::string words = "its steps of more than 1.000 s are gaps (1, the longest 5.000 s)";
+  const std::string warning =
+      "49 poses of " + path("whole.tum") + " have no truth in " + path("hole.tum") + ": " + words;
+  EXPECT_EQ(entry.at("warnings"), Json::array({warning}));
+  EXPECT_THAT(scored.err, HasSubstr("warning: " + warning));
+  EXPECT_EQ(entry.at("matched"), 251);
+  EXPECT_LT(entry.at("alignments").at("sim3").at("position_rmse_m"), 1e-4);
+  EXPECT_THAT(entry.at("alignments").at("sim3").at("notes").dump(),
+              HasSubstr("49 tracked frames have no truth"));
+  // The straight line over the hole belongs to the path.
+  EXPECT_GT(entry.at("truth_path_m"), 20.0 * 29.9);
+  const Outcome nothing = evaluate("in_hole.tum");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("of the truth, " + words));
+}
+
+TEST_F(CommandLine, EvaluateMatchesByNumberOnlyWhatHasTheSameNumber) {
+  std::string kitti;
+  for (int i = 0; i < 60; ++i) {
+    kitti += "1 0 0 " + std::to_string(2.0 * i) + " 0 1 0 0 0 0 1 0\n";
+  }
+  write_text(path("kitti.txt"), kitti);
+  write_text(path("same.tum"), wavy_lines(60));
+  write_text(path("fewer.tum"), wavy_lines(57));
+  const auto evaluate = [&](const std::string& estimate, const std::string& association) {
+    return overfly_program({"evaluate",
+                            "--truth",
+                            path("kitti.txt"),
+                            "--estimate",
+                            path(estimate),
+                            "--association",
+                            association,
+                            "--json"});
+  };
+  for (const char* association : {"interpolate", "nearest"}) {
+    const Outcome refused = evaluate("fewer.tum", association);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err,
+                HasSubstr("kitti.txt (60 poses) and " + path("fewer.tum") + " (57 poses): cannot"));
+    EXPECT_THAT(refused.err, HasSubstr(path("kitti.txt") + " has none; add times, or use"));
+    EXPECT_THAT(refused.err, HasSubstr("--association index"));
+  }
+  const auto used = [&](const Outcome& scored) {
+    EXPECT_EQ(scored.exit_code, 0) << scored.err;
+    return Json::parse(scored.out).at("estimates").at(0).at("association");
+  };
+  EXPECT_EQ(used(evaluate("fewer.tum", "index")), "index");
+  EXPECT_EQ(used(evaluate("same.tum", "interpolate")), "index");
+}
+
+TEST_F(CommandLine, EvaluateWarnsThatPosesOfEurocFilesAreOfTheBody) {
+  std::string euroc;
+  for (int i = 0; i < 60; ++i) {
+    euroc += std::to_string(i * 100'000'000LL) + "," + std::to_string(2 * i) + "," +
+             std::to_string(i % 7) + ",0,1,0,0,0\n";
+  }
+  write_text(path("data.csv"), euroc);
+  write_text(path("camera.tum"), wavy_lines(60));
+  const auto evaluate = [&](const std::string& estimate) {
+    return overfly_program(
+        {"evaluate", "--truth", path("data.csv"), "--estimate", path(estimate), "--json"});
+  };
+  const Outcome other = evaluate("camera.tum");
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_THAT(other.err,
+              HasSubstr("data.csv: files of the EuRoC format have the poses of the body"));
+  EXPECT_THAT(other.err, HasSubstr(path("camera.tum") + " must be of the body too"));
+  EXPECT_THAT(other.err, HasSubstr("overfly track converts them"));
+  EXPECT_EQ(Json::parse(other.out).at("estimates").at(0).at("warnings").size(), 1U);
+  EXPECT_EQ(evaluate("data.csv").err, "");
+}
+
+TEST_F(CommandLine, EvaluateScoresTheOtherFilesAfterABadOne) {
+  write_text(path("wavy.tum"), wavy_lines(60));
+  write_text(path("bad.tum"), "0 1 2 three 0 0 0 1\n");
+  std::vector<std::string> command = {"evaluate",
+                                      "--truth",
+                                      path("wavy.tum"),
+                                      "--estimate",
+                                      path("bad.tum"),
+                                      path("none.tum"),
+                                      path("wavy.tum")};
+  const Outcome shown = overfly_program(command);
+  EXPECT_EQ(shown.exit_code, 2);
+  EXPECT_THAT(shown.err, HasSubstr("error: " + path("bad.tum")));
+  EXPECT_THAT(shown.err, HasSubstr("none.tum"));
+  EXPECT_THAT(shown.out, HasSubstr(path("wavy.tum") + "\n"));
+  command.emplace_back("--json");
+  const Outcome scored = overfly_program(command);
+  EXPECT_EQ(scored.exit_code, 2);
+  const Json estimates = Json::parse(scored.out).at("estimates");
+  ASSERT_EQ(estimates.size(), 3U);
+  EXPECT_EQ(estimates.at(0).at("file"), path("bad.tum"));
+  EXPECT_THAT(estimates.at(0).at("error").at("message").get<std::string>(), HasSubstr("three"));
+  EXPECT_FALSE(estimates.at(0).contains("alignments"));
+  EXPECT_EQ(estimates.at(2).at("file"), path("wavy.tum"));
+  EXPECT_EQ(estimates.at(2).at("matched"), 60);
 }
 
 /// Trajectory files of other programs may repeat time stamps and be out of order.

@@ -67,6 +67,23 @@ TEST_F(CommandLine, RunNamesTheInvalidField) {
             2);
 }
 
+TEST_F(CommandLine, RunTakesTheFolderOfARunThatFailedAtItsStart) {
+  const auto run_from = [&](const std::string& start) {
+    return overfly_program(
+        {"run", scenario_file(), "--out", path("again"), "--set", "start_s=" + start});
+  };
+  const Outcome late = run_from("1000");
+  ASSERT_EQ(late.exit_code, 2) << late.err;
+  EXPECT_EQ(Json::parse(read_text(path("again/manifest.json"))).at("status"), "failed");
+  std::ofstream(path("again/left.txt")) << "of the first";
+  SKIP_WITHOUT_EGL();
+  const Outcome right = run_from("0");
+  ASSERT_EQ(right.exit_code, 0) << right.err;
+  EXPECT_EQ(Json::parse(read_text(path("again/manifest.json"))).at("status"), "completed");
+  EXPECT_FALSE(fs::exists(path("again/left.txt")));
+  EXPECT_EQ(run_from("0").exit_code, 2) << "has frames";
+}
+
 /// Waits, without a time limit, until a run's frames file has this number of lines.
 bool wait_for_frames(RunningProgram& program, const fs::path& run, int wanted) {
   while (program.running()) {

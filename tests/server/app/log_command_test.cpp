@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/motion/trajectory_io.hpp"
+#include "core/text/number_text.hpp"
 #include "tests/flight/logs/log_bytes.hpp"
 #include "tests/flight/logs/northward_log.hpp"
 #include "tests/server/app/program.hpp"
@@ -26,6 +27,32 @@ class LogCommand : public ::testing::Test {
 
   TemporaryFolder folder_;
 };
+
+/// T_world_body: 2 s to the east, banked to the right by 30 deg.
+std::string banked_poses() {
+  const Eigen::Quaterniond q = R_world_body_from({rad_from_deg(30.0), 0.05, rad_from_deg(90.0)});
+  std::string rows;
+  for (int i = 0; i <= 4; ++i) {
+    rows += number_text(0.5 * i) + " " + number_text(12.5 * i) + " 0 600";
+    for (const double value : {q.x(), q.y(), q.z(), q.w()}) rows += " " + number_text(value);
+    rows += "\n";
+  }
+  return rows;
+}
+
+/// A scenario that flies poses.tum; with sensors the export states how its camera is mounted.
+std::string small_scenario(bool with_sensors) {
+  Json scenario = Json::parse(R"({
+    "format_version": 1, "seed": 1, "world": {"builtin": {"seed": 1}},
+    "flight": {"log": {"file": "poses.tum"}},
+    "camera": {"width_px": 64, "height_px": 48, "fov_deg": 80, "rate_hz": 10},
+    "renderer": {"camera": "raycast"}})");
+  if (with_sensors) {
+    scenario["camera"]["mount"] = {{"pitch_deg", 25.0}};
+    scenario["sensors"] = {{"gps", Json::object()}};
+  }
+  return scenario.dump();
+}
 
 TEST_F(LogCommand, InfoListsStreamsTruthAndEvents) {
   const Outcome text = overfly_program({"log", "info", path("flight.bin")});
@@ -193,6 +220,46 @@ TEST_F(LogCommand, SmoothRejectsWhatItCannotDo) {
   EXPECT_THAT(rejected({"--out", path("rows.csv")}), HasSubstr("is the log itself"));
   EXPECT_THAT(rejected({"--out", path("a.tum"), "--residuals", path("rows.csv")}),
               HasSubstr("is the log itself"));
+  // One file would be written over the other.
+  const std::filesystem::path folder = folder_.path();
+  const std::string roundabout = (folder / ".." / folder.filename() / "." / "a.csv").string();
+  for (const std::string& same : {path("a.csv"), roundabout}) {
+    EXPECT_THAT(rejected({"--out", path("a.csv"), "--residuals", same}),
+                HasSubstr("is the file of --out"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a.csv")));
+}
+
+/// What is exported is the camera's pose; a flight is that of the body.
+TEST_F(LogCommand, ConvertsAnExportIntoTheFlightOfItsTruth) {
+  write_text(path("poses.tum"), banked_poses());
+  for (const bool with_sensors : {false, true}) {
+    write_text(path("scenario.json"), small_scenario(with_sensors));
+    const std::string folder = path(with_sensors ? "with" : "without");
+    const Outcome exported = overfly_program(
+        {"export", path("scenario.json"), "--format", "mcap", "--out", folder, "--quiet"});
+    ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    const Outcome converted = overfly_program({"log",
+                                               "convert",
+                                               folder + "/flight.mcap",
+                                               "--source",
+                                               "/camera/truth",
+                                               "--out",
+                                               path("back.tum")});
+    ASSERT_EQ(converted.exit_code, 0) << converted.err;
+    const bool assumed = converted.err.find("it is taken to look down") != std::string::npos;
+    EXPECT_EQ(assumed, !with_sensors) << converted.err;
+    const auto truth = read_trajectory(path("poses.tum"));
+    const auto back = read_trajectory(path("back.tum"));
+    ASSERT_TRUE(truth.ok() && back.ok());
+    ASSERT_GE(back->trajectory.size(), 10U);
+    const std::int64_t begin_ns = back->trajectory.begin_ns();
+    for (const StampedPose& pose : back->trajectory.poses()) {
+      const auto expected = truth->trajectory.at(pose.t_ns - begin_ns);
+      ASSERT_TRUE(expected);
+      EXPECT_LT(rotation_angle_rad(pose.pose.rotation, expected->rotation), 1e-4);
+    }
+  }
 }
 
 }  // namespace

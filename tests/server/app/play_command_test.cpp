@@ -125,6 +125,12 @@ TEST_F(PlayCommand, SaysWhatDoesNotGoTogether) {
   EXPECT_THAT(play({path("a.tum")}).err, HasSubstr("must be given as --origin"));
   EXPECT_EQ(play({path("a.tum"), "--origin", "47,8,400"}).exit_code, 0);
   EXPECT_THAT(play({path("none.bin")}).err, HasSubstr("none.bin"));
+  // A live run that has heard nothing leaves a recording without a frame.
+  std::filesystem::create_directory(path("live"));
+  write_text(path("live/vehicle.tlog"), "");
+  EXPECT_THAT(play({path("live")}).err, HasSubstr("vehicle.tlog: holds no poses"));
+  write_text(path("empty.tum"), "");
+  EXPECT_THAT(play({path("empty.tum")}).err, HasSubstr("empty.tum: holds no poses"));
   EXPECT_NE(play({folder_.path().string()}).exit_code, 0);
 }
 

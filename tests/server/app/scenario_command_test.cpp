@@ -31,6 +31,12 @@ TEST_F(ScenarioCommand, WhatIsShownIsAScenarioItself) {
       << "defaults change nothing";
 }
 
+TEST_F(ScenarioCommand, ListsOnlyFoldersThatExist) {
+  const Outcome outcome = overfly_program({"scenario", "list", path("nowhere")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere: no such folder"));
+}
+
 TEST_F(ScenarioCommand, EveryInvalidFileIsNamed) {
   write_text(path("empty.json"), "");
   write_text(path("list.json"), "[]");

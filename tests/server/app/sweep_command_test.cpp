@@ -20,7 +20,9 @@ namespace overfly::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 class SweepCommand : public CommandLine {
@@ -216,7 +218,53 @@ TEST_F(SweepCommand, ComparesTwoSweepsFlightByFlight) {
   const Outcome none =
       overfly_program({"compare", path("s5"), path("absent"), "--fail-if", "success_rate < 1"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("no flight was completed in both"));
+  EXPECT_THAT(none.err, HasSubstr("absent: is no folder of a sweep (sweep.json is missing)"));
+  const Outcome unwritten = overfly_program({"compare",
+                                             path("s5"),
+                                             path("s6"),
+                                             "--fail-if",
+                                             "success_rate < 0.5",
+                                             "--junit",
+                                             path("absent/junit.xml")});
+  EXPECT_EQ(unwritten.exit_code, 2) << "1 says that a condition holds";
+  EXPECT_THAT(unwritten.err, HasSubstr("--junit: "));
+}
+
+TEST_F(SweepCommand, AnEstimatorWhoseProgramIsMissingIsNoResult) {
+  const std::string program = path("late_vo");
+  write_text(path("late.json"),
+             R"({"format_version": 1, "scenario": ")" + scenario_file() + R"(",
+    "axes": [], "retries": 0,
+    "estimators": [{"name": "late", "type": "process", "command": [")" +
+                 program + R"("]}]})");
+  const std::vector<std::string> words{"sweep", path("late.json"), "--out", path("s9")};
+  std::vector<std::string> dry = words;
+  dry.emplace_back("--dry-run");
+  const std::string reason = "command[0] = '" + program + "': there is no such file";
+  const Outcome planned = overfly_program(dry);
+  EXPECT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_THAT(planned.err, HasSubstr("warning: estimator late: " + reason));
+  for (int call = 0; call < 2; ++call) {  // The second one tries again.
+    const Outcome flown = overfly_program(words);
+    EXPECT_EQ(flown.exit_code, 1);
+    EXPECT_THAT(flown.err,
+                AllOf(HasSubstr("warning: estimator late never ran: "), HasSubstr(reason)));
+    EXPECT_THAT(flown.out, HasSubstr("1 not flown"));
+    EXPECT_THAT(flown.out, Not(HasSubstr("CRASHED")));
+    EXPECT_EQ(Json::parse(read_text(path("s9/progress.json"))).at("flown"), 1);
+  }
+}
+
+TEST_F(SweepCommand, DoesNotMixItsFilesIntoARun) {
+  fs::create_directories(path("run"));
+  write_text(path("run/manifest.json"), "{}");
+  const Outcome sweep = overfly_program({"sweep", file(), "--out", path("run")});
+  EXPECT_EQ(sweep.exit_code, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("run: is no folder of a sweep"));
+  const Outcome envelope = overfly_program(
+      {"envelope", file(), "--out", path("run"), "--along", "flight.course.airspeed_m_s"});
+  EXPECT_EQ(envelope.exit_code, 2);
+  EXPECT_FALSE(fs::exists(path("run/runs")));
 }
 
 TEST_F(SweepCommand, NamesOptionsThatDoNotFitTogether) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -168,6 +169,7 @@ TEST_F(TrackCommand, NamesWhatIsWrong) {
       {{"--layout", "tum-mono"}, "images: no such folder"},
       {{"--camera-name", "cam7"}, "cam7/data.csv: no such file"},
       {{"--points", "/no/such/folder/p.ply"}, "folder /no/such/folder does not exist"},
+      {{"--points", "/"}, "/: is a folder, must be a file"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = track(arguments);
@@ -176,6 +178,23 @@ TEST_F(TrackCommand, NamesWhatIsWrong) {
     EXPECT_THAT(outcome.err, HasSubstr(message));
     EXPECT_FALSE(fs::exists(path("t.tum")));
   }
+}
+
+TEST_F(TrackCommand, ChecksThatItsOutputsCanBeWritten) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write to every folder";
+  const fs::path locked = folder_.path() / "locked";
+  fs::create_directories(locked);
+  fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
+  for (const char* option : {"--points", "--statuses", "--debug", "--estimator-folder"}) {
+    const bool is_folder = std::string(option) == "--debug" || option[2] == 'e';
+    const std::string target = is_folder ? locked.string() : (locked / "out").string();
+    const Outcome outcome = track({option, target});
+    EXPECT_EQ(outcome.exit_code, 1) << option;
+    EXPECT_THAT(outcome.err,
+                HasSubstr(target + ": folder " + locked.string() + " cannot be written to: "));
+    EXPECT_FALSE(fs::exists(path("t.tum"))) << option;
+  }
+  fs::permissions(locked, fs::perms::owner_all);
 }
 
 /// A process that fails over its calibration, or exits at frame 7.
@@ -247,6 +266,13 @@ TEST_F(TrackCommand, RunFailsWhenNoneOfItsEstimatorsRan) {
   const Outcome with_other = flown(Json::array({gone, perfect}), "with_other");
   EXPECT_EQ(with_other.exit_code, 0);
   EXPECT_THAT(with_other.err, HasSubstr("estimator gone never ran"));
+  const Json ends = {{"name", "ends"},
+                     {"type", "process"},
+                     {"command", failing_estimator(folder_.path(), "flight")}};
+  const Outcome crashed = flown(Json::array({ends}), "crashed");
+  EXPECT_EQ(crashed.exit_code, 0);
+  EXPECT_THAT(crashed.out, HasSubstr("CRASHED at "));
+  EXPECT_THAT(crashed.out, HasSubstr("    crashed: "));
 }
 
 TEST_F(TrackCommand, InterruptKeepsWhatWasTracked) {

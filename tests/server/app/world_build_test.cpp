@@ -61,6 +61,54 @@ TEST_F(WorldBuildCommand, MakesAWorldOfFilesAndThenHasNothingToDo) {
   EXPECT_THAT(by_manifest.out, HasSubstr("up to date")) << by_manifest.err;
 }
 
+TEST_F(WorldBuildCommand, TakesWhatIsStatedAboutAWorldThatIsThere) {
+  const std::vector<std::string> flat = {
+      "world", "build", path("files/imagery.tif"), "--out", path("flat"), "--quiet"};
+  ASSERT_EQ(overfly_program(flat).exit_code, 0);
+  const auto with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words = flat;
+    words.insert(words.end(), options.begin(), options.end());
+    return overfly_program(words);
+  };
+  const Outcome corrected =
+      with({"--ground-height-m", "250", "--name", "Field", "--attribution", "Nobody"});
+  ASSERT_EQ(corrected.exit_code, 0) << corrected.err;
+  const auto written = fs::last_write_time(path("flat/world.json"));
+  EXPECT_EQ(with({}).exit_code, 0);
+  EXPECT_EQ(with({"--name", "Field"}).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(path("flat/world.json")), written) << "as it was";
+  const Outcome info = overfly_program({"world", "info", path("flat")});
+  EXPECT_THAT(info.out, HasSubstr("name: Field"));
+  EXPECT_THAT(info.out, HasSubstr("250.00 m"));
+  EXPECT_THAT(info.out, HasSubstr("attribution: Nobody"));
+  const Outcome manifest =
+      overfly_program({"world", "build", path("flat/world.json"), "--ground-height-m", "3"});
+  EXPECT_EQ(manifest.exit_code, 2);
+  EXPECT_THAT(manifest.err, HasSubstr("--ground-height-m: only for imagery and elevation files"));
+}
+
+TEST_F(WorldBuildCommand, LeavesNoManifestOfAWorldThatCannotBeBuilt) {
+  fs::copy_file(path("files/elevation.tif"), path("cut.tif"));
+  fs::resize_file(path("cut.tif"), fs::file_size(path("cut.tif")) / 2);
+  const Outcome cut = overfly_program({"world",
+                                       "build",
+                                       path("files/imagery.tif"),
+                                       path("cut.tif"),
+                                       "--out",
+                                       path("second"),
+                                       "--quiet"});
+  ASSERT_NE(cut.exit_code, 0);
+  EXPECT_FALSE(fs::exists(path("second/world.json")));
+  const Outcome whole = overfly_program({"world",
+                                         "build",
+                                         path("files/imagery.tif"),
+                                         path("files/elevation.tif"),
+                                         "--out",
+                                         path("second"),
+                                         "--quiet"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+}
+
 TEST_F(WorldBuildCommand, DoesNotTouchAnotherWorldsFolder) {
   const Outcome other = overfly_program(
       {"world", "build", path("files/imagery.tif"), "--out", path("files"), "--quiet"});

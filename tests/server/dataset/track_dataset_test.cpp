@@ -351,6 +351,27 @@ TEST_F(TrackDataset, ScoresNoFrameWhereTheTruthDoesNotKnow) {
   EXPECT_EQ(score.alignments.at(evaluation::AlignmentMode::kSe3).matched, 3);
 }
 
+TEST_F(TrackDataset, ScoresNoFrameInALongStepOfTheTruth) {
+  constexpr std::int64_t kStepNs = 10'000'000;
+  TrajectoryFile truth;
+  const std::int64_t begin_ns = dataset_.images[0].t_ns;
+  const std::int64_t hole_ns = dataset_.images[5].t_ns;
+  // Up to the last image but one; after that only long after the last one.
+  for (std::int64_t t_ns = begin_ns; t_ns < hole_ns; t_ns += kStepNs) {
+    ASSERT_TRUE(
+        truth.trajectory.append({t_ns, Pose{Eigen::Quaterniond::Identity(), {1e-9 * t_ns, 0, 0}}})
+            .ok());
+  }
+  ASSERT_TRUE(truth.trajectory.append({hole_ns + 3 * kNsPerS, Pose{}}).ok());
+  std::vector<std::string> notes;
+  const Result<Trajectory> camera = camera_truth(dataset_, truth, notes);
+  ASSERT_TRUE(camera.ok());
+  EXPECT_THAT(notes.back(),
+              HasSubstr("of the truth, its steps of more than 1.000 s are gaps (1, "));
+  const evaluation::Score score = score_of(dataset_, tracked(well), *camera, true, std::nullopt);
+  EXPECT_EQ(score.alignments.at(evaluation::AlignmentMode::kSe3).matched, 5);
+}
+
 TEST_F(TrackDataset, MatchesATruthWithoutTimesByItsLines) {
   Trajectory truth;
   for (int i = 0; i < 6; ++i) {

@@ -87,6 +87,29 @@ TEST(CompareSweeps, FlightsThatTheSweepNoLongerHasAreLeftOut) {
   EXPECT_EQ(pairs->without_pair, 1U);
 }
 
+TEST(CompareSweeps, MissingSweepsAndEstimatorsAreNamed) {
+  const overfly::testing::TemporaryFolder folder;
+  const fs::path sweep = folder.path() / "new";
+  write_flight(sweep, {50, 1.0});
+  const auto fault = [&](const fs::path& baseline, const std::string& estimator) {
+    const auto pairs = pair_sweeps(sweep, baseline, estimator, AlignmentMode::kSim3);
+    EXPECT_EQ(pairs.error().code, ErrorCode::kNotFound);
+    return pairs.error().message;
+  };
+  const fs::path run = sweep / "runs/50";
+  EXPECT_EQ(fault(run, ""), run.string() + ": is no folder of a sweep (sweep.json is missing)");
+  EXPECT_EQ(
+      fault(folder.path() / "absent", ""),
+      (folder.path() / "absent").string() + ": is no folder of a sweep (sweep.json is missing)");
+  EXPECT_EQ(fault(sweep, "nobody"), sweep.string() + ": has no estimator nobody (known: e)");
+  // A sweep without results is one.
+  fs::create_directories(folder.path() / "fresh");
+  std::ofstream(folder.path() / "fresh/sweep.json") << "{}";
+  const auto fresh = pair_sweeps(sweep, folder.path() / "fresh", "e", AlignmentMode::kSim3);
+  ASSERT_TRUE(fresh.ok()) << fresh.error().message;
+  EXPECT_EQ(fresh->pairs, 0U);
+}
+
 TEST(CompareSweeps, FlightsWithoutAPairAndFailedOnesAreCounted) {
   const PairedSweeps pairs = paired({{50, std::nullopt, Outcome::kNotInitialised},
                                      {100, 1.0},

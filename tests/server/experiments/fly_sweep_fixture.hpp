@@ -43,6 +43,20 @@ class FlySweep : public ::testing::Test {
   static void copy_run(const std::filesystem::path& to) {
     std::filesystem::copy(shared_->path() / "run", to, std::filesystem::copy_options::recursive);
   }
+  /// The same run, in which some of its estimators ended before they answered a frame.
+  static void copy_run_without(const std::vector<std::string>& estimators,
+                               const std::filesystem::path& to) {
+    copy_run(to);
+    const std::filesystem::path file = to / "metrics.json";
+    auto metrics = nlohmann::json::parse(overfly::testing::read_text(file));
+    for (const std::string& name : estimators) {
+      auto& estimator = metrics["estimators"][name];
+      estimator["answered"] = 0;
+      estimator["crash"] = "there is no such file";
+      estimator["outcome"] = "CRASHED";
+    }
+    overfly::testing::write_text(file, metrics.dump());
+  }
   Sweep sweep(const std::string& fields) {
     const std::filesystem::path file = own_.path() / "sweep.json";
     const std::filesystem::path scenario =

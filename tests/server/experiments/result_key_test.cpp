@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "server/experiments/program_files.hpp"
+#include "server/experiments/script_modules.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
 namespace overfly::server::experiments {
@@ -106,6 +108,84 @@ TEST(ResultKey, FollowsAProgramInThePath) {
   write_program("#!/bin/sh\necho 2\n");
   EXPECT_NE(result_key("flight", estimator), key);
   EXPECT_TRUE(program_files("no-such-program-anywhere").empty());
+}
+
+/// An estimator in Python: its script, and modules next to it.
+class PythonEstimator : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("vo.py", "import mine.filter\n");
+    write("mine/filter.py", "gain = 1\n");
+  }
+  void write(const fs::path& file, const std::string& text) {
+    fs::create_directories((root() / file).parent_path());
+    write_text(root() / file, text);
+  }
+  [[nodiscard]] const fs::path& root() const { return folder_.path(); }
+  [[nodiscard]] fs::path script() const { return root() / "vo.py"; }
+  [[nodiscard]] static std::string key_of(const std::vector<std::string>& command) {
+    return result_key("flight", {{"type", "process"}, {"command", command}});
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(PythonEstimator, KeyFollowsTheModulesNextToTheScript) {
+  const std::vector<std::string> command{"python3", script().string(), "--fast"};
+  const std::string key = key_of(command);
+  EXPECT_EQ(key_of(command), key);
+  write("mine/filter.py", "gain = 2\n");
+  EXPECT_NE(key_of(command), key);
+  write("mine/filter.py", "gain = 1\n");
+  EXPECT_EQ(key_of(command), key);
+  write("mine/more.py", "");
+  EXPECT_NE(key_of(command), key) << "a module of the same name elsewhere may be hidden by it";
+  fs::remove(root() / "mine/more.py");
+  for (const char* file : {"mine/__pycache__/filter.py", ".git/hook.py", "notes.txt"}) {
+    write(file, "anything");
+    EXPECT_EQ(key_of(command), key) << file;
+  }
+  for (const char* file : {"venv/pyvenv.cfg", "venv/lib/package.py"}) {
+    write(file, "anything");
+  }
+  EXPECT_EQ(key_of(command), key) << "installed packages do not count";
+}
+
+TEST_F(PythonEstimator, IsFoundByItsFirstLineAndThroughLinks) {
+  write("bin/vo", "#!/usr/bin/env python3\n");
+  fs::permissions(root() / "bin/vo", fs::perms::owner_all);
+  write("bin/helper.py", "one");
+  fs::create_directories(root() / "links");
+  fs::create_symlink(root() / "bin/vo", root() / "links/vo");
+  const std::string linked = (root() / "links/vo").string();
+  EXPECT_EQ(script_modules({linked}), std::vector<fs::path>{root() / "bin/helper.py"});
+  write("bin/data", "no script");
+  EXPECT_TRUE(script_modules({"/bin/true", (root() / "bin/data").string()}).empty());
+}
+
+TEST_F(PythonEstimator, FoldersOfTheSystemAreNotSearched) {
+  for (const auto& entry : fs::directory_iterator("/usr/bin")) {
+    std::error_code ignored;
+    if (!entry.is_regular_file(ignored)) continue;
+    for (const fs::path& module : script_modules({entry.path().string()})) {
+      ADD_FAILURE() << entry.path() << " brings " << module;
+    }
+  }
+  // Of the folder of temporary files only its own.
+  const fs::path shared = fs::temp_directory_path() / (root().filename().string() + ".py");
+  write_text(shared, "");
+  const std::vector<fs::path> modules = script_modules({"python3", shared.string()});
+  fs::remove(shared);
+  EXPECT_NE(std::find(modules.begin(), modules.end(), shared), modules.end());
+  EXPECT_EQ(std::find(modules.begin(), modules.end(), script()), modules.end());
+}
+
+TEST_F(PythonEstimator, ModulesAreLimited) {
+  for (int i = 0; i < 2100; ++i) {
+    write("many/" + std::to_string(i) + ".py", "");
+  }
+  EXPECT_EQ(script_modules({"python3", script().string()}).size(), 2000U);
 }
 
 /// Builds a program with a library next to it, as an adapter with an upstream system.

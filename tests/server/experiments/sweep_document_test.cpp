@@ -131,6 +131,11 @@ TEST_F(SweepDocument, NamesWhatIsInvalid) {
               HasSubstr("axes.0.step: must be given"));
   EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "from": 0, "to": 1e300, "step": 1}])"),
               HasSubstr("more than 10000"));
+  const std::string misspelt = fault_of(R"("axes": [{"path": "seed", "vals": [1]}])");
+  EXPECT_THAT(misspelt,
+              HasSubstr("must be exactly one of {path, values}, {path, from, to, step}, "
+                        "{name, variants} (unknown: vals)"));
+  EXPECT_EQ(misspelt.find('?'), std::string::npos);
   EXPECT_THAT(
       fault_of(R"("axes": [{"path": "seed", "values": [1]}, {"path": "seed", "values": [2]}])"),
       HasSubstr("axes.1 = seed"));

@@ -57,6 +57,8 @@ TEST(SweepFolders, TellsAxesAndProgress) {
   EXPECT_EQ(entry["flying"], false);
   EXPECT_EQ(entry["progress"], nullptr);
   SweepProgress progress;
+  ASSERT_TRUE(write_progress(sweep, progress).ok());
+  EXPECT_EQ(sweep_entry(folder.path(), "s").value()["progress"]["left_s"], nullptr) << "unknown";
   progress.passed = 3;
   progress.most = 8;
   progress.left_s = 12.5;
@@ -68,6 +70,22 @@ TEST(SweepFolders, TellsAxesAndProgress) {
   EXPECT_EQ(entry["progress"]["passed"], 3);
   EXPECT_EQ(entry["progress"]["most"], 8);
   EXPECT_EQ(entry["progress"]["left_s"], 12.5);
+}
+
+TEST(SweepFolders, AFolderOfSomethingElseDoesNotBecomeASweep) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  EXPECT_TRUE(check_sweep_folder(out).ok()) << "absent";
+  fs::create_directories(out / "runs");
+  write_text(out / ".running", "");
+  EXPECT_TRUE(check_sweep_folder(out).ok()) << "a sweep that was killed at its start";
+  write_text(out / "manifest.json", "{}");
+  const Status refused = check_sweep_folder(out);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("it has manifest.json"));
+  write_text(out / "sweep.json", "{}");
+  EXPECT_TRUE(check_sweep_folder(out).ok());
 }
 
 TEST(SweepFolders, SurvivesDamagedFiles) {

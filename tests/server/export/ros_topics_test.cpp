@@ -22,7 +22,8 @@ TEST(RosMounts, LeadFromTheCameraToTheBodyAndItsRangeSensor) {
   ASSERT_LT((T_world_body.rotation * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(),
             1e-12);
   const Pose T_world_camera = T_world_body * camera.T_body_camera;
-  const std::vector<RosMount> mounts = ros_mounts(camera.T_body_camera, "camera_optical_frame");
+  const std::vector<RosMount> mounts =
+      ros_mounts(camera.T_body_camera, "camera_optical_frame", true);
   ASSERT_EQ(mounts.size(), 2U);
   EXPECT_EQ(mounts[0].parent_frame, "camera_optical_frame");
   EXPECT_STREQ(mounts[0].child_frame, "base_link");

@@ -97,7 +97,8 @@ TEST(RosbagExport, HoldsImagesCalibrationAndTruthOfEveryCamera) {
   }
   const auto tilted = messages_of<ros1::CameraInfoMessage>(file, "/tilted_2/camera_info");
   EXPECT_THAT(tilted.front()->D, ::testing::ElementsAre(-0.1, 0.01, 0.002, 0.001, 0.0));
-  EXPECT_EQ(messages_of<ros1::TransformsMessage>(file, "/tf").size(), 2 * frames.size());
+  EXPECT_EQ(messages_of<ros1::TransformsMessage>(file, "/tf").size(), 3 * frames.size())
+      << "of two cameras, and the mount of the first one";
 }
 
 TEST(RosbagExport, HoldsTheTruthOfLostImagesWithoutTheImages) {

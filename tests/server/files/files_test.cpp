@@ -1,9 +1,10 @@
-// JPEG, whole files, lines.
+// JPEG, whole files, lines, schemas.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "server/files/jpeg.hpp"
+#include "server/files/json_schema.hpp"
 #include "server/files/take_name.hpp"
 #include "server/files/whole_file.hpp"
 #include "tests/support/support.hpp"
@@ -139,6 +140,22 @@ TEST(WholeFile, RefusesDeepJson) {
   EXPECT_THAT(read_json(file).error().message, HasSubstr("a.json: is nested more than 64 deep"));
   overfly::testing::write_text(file, "{}\n" + deep + "\n");
   EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2: is nested more than 64 deep"));
+}
+
+TEST(JsonSchema, NamesBranchesWithoutTitlesAndUnknownFields) {
+  const JsonSchema schema(nlohmann::json::parse(R"({"oneOf": [
+    {"type": "object", "required": ["a"], "properties": {"a": {}, "more": {}}},
+    {"type": "object", "title": "b with c", "required": ["b", "c"], "properties": {"b": {}, "c": {}}},
+    {"type": "number"}]})"));
+  const auto fault = [&](const char* document) {
+    const auto violations = schema.violations(nlohmann::json::parse(document));
+    return violations.empty() ? "" : violations.front().text;
+  };
+  EXPECT_EQ(fault(R"({"b": 1, "d": 2})"),
+            R"(the document = {"b":1,"d":2}: must be exactly one of {a}, b with c, number )"
+            "(unknown: d)");
+  EXPECT_EQ(fault("true"), "the document = true: must be exactly one of {a}, b with c, number");
+  EXPECT_EQ(fault(R"({"a": 1})"), "");
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ RunMetrics full_metrics() {
   camera.texture = {0.25, 0.375, true};
   camera.void_fraction_mean = 0.125;
   camera.void_fraction_max = 0.5;
+  camera.mostly_void_frames = 6;
   camera.late_tiles = 3;
   camera.frames_with_late_tiles = 2;
   camera.faults = {{"blackout", 4}, {"noise", 5}};
@@ -90,6 +91,8 @@ TEST(RunMetricsJson, IsReadAsItWasWritten) {
   const auto read = run_metrics_from(Json::parse(document.dump()));
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(json_from(*read), document);
+  EXPECT_EQ(document.at("camera").at("mostly_void_frames"), 6);
+  EXPECT_FALSE(document.at("cameras").at("tilted").contains("mostly_void_frames"));
   EXPECT_FALSE(document.at("cameras").at("tilted").contains("late_tiles"));
   EXPECT_FALSE(document.at("cameras").at("tilted").contains("faults"));
   EXPECT_EQ(document.at("camera").at("late_frame_ranges"), Json::parse("[[1, 1], [3, 4]]"));

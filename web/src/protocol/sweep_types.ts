@@ -14,7 +14,8 @@ export interface SweepProgress {
   most: number;
   flown: number;
   failed: number;
-  left_s: number;
+  /** Null while it is not known. */
+  left_s: number | null;
   spent_s: number;
 }
 

@@ -129,6 +129,11 @@ Result<flight::SmoothedLog> smooth(const SmoothArguments& arguments) {
         !status) {
       return status.error();
     }
+    if (Status status =
+            check_other_output("--residuals", arguments.residuals, "--out", arguments.flight.out);
+        !status) {
+      return status.error();
+    }
   }
   const Result<std::optional<double>> offset_s = time_offset_from(arguments.time_offset);
   if (!offset_s) return offset_s.error();

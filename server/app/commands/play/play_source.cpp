@@ -71,6 +71,13 @@ LocalFrame frame_of(const PlayedFile& played) {
 
 Result<playback::PlayedFlight> open_poses(const PlayedFile& played,
                                           const std::atomic<bool>* cancel) {
+  std::error_code failure;
+  if (played.file.extension() == ".tlog" || fs::is_empty(played.file, failure)) {
+    return Error{
+        ErrorCode::kUnreadable,
+        played.file.string() + ": holds no poses" +
+            (played.file.extension() == ".tlog" ? ": no message of a vehicle is in it" : "")};
+  }
   if (!played.source.empty()) return misused("--source", played, "a file of poses");
   if (played.file.extension() != ".csv" && !played.origin) {
     return Error{ErrorCode::kInvalidArgument,
@@ -90,6 +97,7 @@ Result<playback::PlayedFlight> open_logged(const PlayedFile& played,
   flight::LogFlightOptions options;
   options.source = played.source;
   options.local_origin = played.origin;
+  options.far_poses = true;
   const FlatGround nowhere(0.0);
   auto flown = flight::fly_flight_log(
       played.file, options, frame_of(played), nowhere, SourcePolicy(), cancel);

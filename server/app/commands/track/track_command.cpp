@@ -1,11 +1,15 @@
 // overfly track: runs an estimator over recorded images.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
@@ -30,20 +34,43 @@ struct Truth {
   bool has_times = true;
 };
 
+/// Errors: kIo with the system's reason.
+Status check_writable(const fs::path& folder, const std::string& written) {
+  if (access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  const std::string reason = std::generic_category().message(errno);
+  return Error{ErrorCode::kIo,
+               written + ": folder " + folder.string() + " cannot be written to: " + reason};
+}
+
+/// A file is written as a new one in its folder, which then takes its name.
+/// Errors: kNotFound without the folder; kInvalidArgument if it is itself a folder; kIo.
+Status check_output_file(const std::string& file) {
+  std::error_code failure;
+  fs::path folder = fs::path(file).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::is_directory(folder, failure)) {
+    return Error{ErrorCode::kNotFound, file + ": folder " + folder.string() + " does not exist"};
+  }
+  if (fs::is_directory(file, failure)) {
+    return Error{ErrorCode::kInvalidArgument, file + ": is a folder, must be a file"};
+  }
+  return check_writable(folder, file);
+}
+
 /// Checked before the estimator runs, so that no result is lost because its file cannot be written.
 Status check_outputs(const TrackArguments& arguments) {
-  std::error_code failure;
   for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
-    const fs::path folder = fs::path(file).parent_path();
-    if (file.empty() || folder.empty() || fs::is_directory(folder, failure)) continue;
-    return Error{ErrorCode::kNotFound, file + ": folder " + folder.string() + " does not exist"};
+    if (file.empty()) continue;
+    if (Status status = check_output_file(file); !status) return status;
   }
   for (const std::string& folder : {arguments.debug, arguments.estimator_folder}) {
     if (folder.empty()) continue;
+    std::error_code failure;
     fs::create_directories(folder, failure);
     if (failure) {
       return Error{ErrorCode::kIo, folder + ": cannot be created: " + failure.message()};
     }
+    if (Status status = check_writable(folder, folder); !status) return status;
   }
   return {};
 }

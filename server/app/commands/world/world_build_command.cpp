@@ -1,10 +1,13 @@
 // overfly world build: prepares tiles and heights in a cache next to the manifest.
 #include <CLI/CLI.hpp>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "server/app/commands/commands.hpp"
@@ -71,28 +74,63 @@ Result<terrain::WorldSpec> spec_of(const BuildArguments& arguments) {
   return spec;
 }
 
-/// Writes the manifest into the folder of `--out`; an existing one must have the same content.
-Status write_manifest(const fs::path& folder, terrain::WorldSpec& spec) {
-  const fs::path manifest = folder / "world.json";
+/// The world of the folder of `--out`. If it exists, it must have the same layers; what is stated
+/// now replaces its name, its attribution and its ground height.
+Result<terrain::WorldSpec> spec_in_folder(const BuildArguments& arguments,
+                                          terrain::WorldSpec spec) {
+  const fs::path manifest = fs::path(arguments.out) / "world.json";
   spec.cache_folder = terrain::cache_folder_of(manifest);
   std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (fs::exists(manifest, failed)) {
-    const auto there = terrain::read_world_manifest(manifest);
-    if (there && terrain::same_layers(*there, spec)) return {};
+  if (!fs::exists(manifest, failed)) return spec;
+  auto there = terrain::read_world_manifest(manifest);
+  if (!there || !terrain::same_layers(*there, spec)) {
     return Error{ErrorCode::kConflict,
                  manifest.string() + ": exists and lists other layers; choose another folder"};
   }
+  if (!arguments.name.empty()) there->name = arguments.name;
+  if (arguments.ground_height_m) there->ground_height_m = arguments.ground_height_m;
+  if (!arguments.attribution.empty()) {
+    for (auto& layer : there->elevation) layer.attribution = arguments.attribution;
+    for (auto& layer : there->imagery) layer.attribution = arguments.attribution;
+  }
+  return there;
+}
+
+/// Errors: kInvalidArgument for an option that a manifest has a field for.
+Status check_options(const BuildArguments& arguments) {
+  if (manifest_of(arguments.files).empty()) return {};
+  const std::array<std::pair<const char*, bool>, 5> given = {
+      std::pair("--out", !arguments.out.empty()),
+      std::pair("--vertical-datum", !arguments.datum.empty()),
+      std::pair("--attribution", !arguments.attribution.empty()),
+      std::pair("--name", !arguments.name.empty()),
+      std::pair("--ground-height-m", arguments.ground_height_m.has_value())};
+  for (const auto& [option, is_given] : given) {
+    if (!is_given) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 std::string(option) + ": only for imagery and elevation files; " +
+                     manifest_of(arguments.files).string() + " has it as a field"};
+  }
+  return {};
+}
+
+/// Writes the manifest of a world that was built from files. One that is there stays as it is
+/// unless something about it is stated.
+Status write_manifest(const BuildArguments& arguments, const terrain::WorldSpec& spec) {
+  const fs::path manifest = fs::path(arguments.out) / "world.json";
+  std::error_code failed;
+  const bool stated = !arguments.name.empty() || !arguments.attribution.empty() ||
+                      arguments.ground_height_m.has_value();
+  if (!stated && fs::exists(manifest, failed)) return {};
+  fs::create_directories(arguments.out, failed);
   return terrain::write_world_manifest(manifest, spec);
 }
 
 int build(const BuildArguments& arguments) {
+  if (Status status = check_options(arguments); !status) return report(status.error());
   auto spec = spec_of(arguments);
+  if (spec && !arguments.out.empty()) spec = spec_in_folder(arguments, std::move(*spec));
   if (!spec) return report(spec.error());
-  if (!arguments.out.empty()) {
-    const Status written = write_manifest(arguments.out, *spec);
-    if (!written) return report(written.error());
-  }
   const std::atomic<bool>& stop = catch_stop_signals();
   Result<terrain::BuildReport> built = Error{};
   {
@@ -103,6 +141,10 @@ int build(const BuildArguments& arguments) {
     });
   }
   if (!built) return report(built.error());
+  // Only now: a world that cannot be built leaves no manifest.
+  if (!arguments.out.empty()) {
+    if (Status written = write_manifest(arguments, *spec); !written) return report(written.error());
+  }
   for (const std::string& warning : built->warnings) std::cerr << "warning: " << warning << "\n";
   constexpr double kMega = 1e-6;
   std::cout << built->folder.string() << ": "

@@ -138,6 +138,23 @@ TEST_F(FolderSweep, ThreeWorkersFlyEachFlightOnce) {
   EXPECT_TRUE(fs::exists(folder() / flown.results.newest().front()->run / "manifest.json"));
 }
 
+TEST_F(FolderSweep, AnEstimatorThatNeverRanHasNoResultFromAWorkerEither) {
+  const fs::path without = own_folder() / "without";
+  copy_run_without({"p", "q"}, without);
+  write_program("cp -r '" + without.string() + "' \"$4\"; exit 1");
+  const Sweep two = sweep(std::string(kTwoSpeeds) + R"(, "retries": 0)");
+  control(two);
+  JobWorker own = worker();
+  ASSERT_TRUE(step_until_over(own));
+  EXPECT_EQ(flights_of(finished(), folder()), 0);
+  EXPECT_THAT(warnings_, Contains(HasSubstr("estimator p never ran: there is no such file")));
+  write_program();
+  control(two);
+  JobWorker other = worker();
+  ASSERT_TRUE(step_until_over(other));
+  EXPECT_EQ(flights_of(finished(), folder()), 2);
+}
+
 /// Killed with SIGKILL, or its machine lost: its process and its flight end without a word.
 TEST_F(FolderSweep, AFlightOfAWorkerThatVanishesIsFlownAgain) {
   write_program("if [ ! -e '" + (own_folder() / "began").string() + "' ]; then touch '" +

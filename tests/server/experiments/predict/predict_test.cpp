@@ -282,6 +282,20 @@ TEST(PredictionWords, SayThatNothingIsRisky) {
               StartsWith("No part of it is risky; the highest risk is at 1.5 s: up to 30 %"));
 }
 
+TEST(PredictionWords, HeightsOfThreeDigitsHaveNoExponent) {
+  Prediction prediction = risky_prediction();
+  RiskMap& map = prediction.map.emplace();
+  map.columns = 1;
+  map.rows = 1;
+  map.risk = {0.2};
+  map.height_agl_m = 99.4;
+  EXPECT_THAT(sentences_of(prediction).back(), HasSubstr("at 99 m over"));
+  for (const double height_agl_m : {99.5, 99.99, 100.4}) {
+    map.height_agl_m = height_agl_m;
+    EXPECT_THAT(sentences_of(prediction).back(), HasSubstr("at 100 m over")) << height_agl_m;
+  }
+}
+
 TEST(PredictionPage, ColoursCellsWithImagery) {
   RiskMap map;
   map.columns = 2;

@@ -33,7 +33,9 @@ TEST(RunRoutes, FullQueueIsToldApart) {
   for (std::uint64_t seen = 0; timeline->frame_count() == 0;) {
     seen = timeline->wait_for_change(seen, 1000);
   }
-  EXPECT_EQ(launch(server, {{"scenario", "tiny"}}).status, 201);
+  const Answer waiting = launch(server, {{"scenario", "tiny"}, {"overrides", {{"seed", 7}}}});
+  EXPECT_EQ(waiting.status, 201);
+  EXPECT_EQ(waiting.json().at("seed"), 7) << "before it flies";
   EXPECT_EQ(launch(server, {{"scenario", "tiny"}}).status, 201);
   const Answer refused = launch(server, {{"scenario", "tiny"}});
   EXPECT_EQ(refused.status, 429);

@@ -82,8 +82,8 @@ TEST_F(SweepRoutesTest, NamesTheFieldsAtFault) {
       "axes.0.to");
   EXPECT_EQ(fault({{"repeats", {{"most", 0}}}}).at("field"), "repeats.most");
   EXPECT_EQ(fault({{"scenario", "nobody"}}).at("field"), "scenario");
-  EXPECT_EQ(fault({{"set", {{"camera.width_px", 3}}}}).at("field"), "seed")
-      << "the cell is named first";
+  EXPECT_EQ(fault({{"set", {{"camera.width_px", 3}}}}).at("field"), "camera.width_px")
+      << "an error of all cells is none of the axis";
   EXPECT_THAT(fault({{"set", {{"camera.width_px", 3}}}}).at("message"),
               HasSubstr("camera.width_px = 3"));
   EXPECT_FALSE(fs::exists(server_->folder() / "sweeps/x"));

@@ -108,7 +108,7 @@ TEST_F(SweepTablesRoutesTest, ComparisonsNameWhatIsAtFault) {
   EXPECT_EQ(compared({{"baseline", "../runs"}}).status, 404);
   const Answer none = compared({{"baseline", "more"}, {"estimator", "nobody"}});
   EXPECT_EQ(none.status, 404);
-  EXPECT_THAT(none.body, HasSubstr("seeds and more: no flight was completed in both"));
+  EXPECT_THAT(none.body, HasSubstr("seeds: has no estimator nobody (known: "));
   EXPECT_THAT(none.body, Not(HasSubstr(server_->folder().string())));
 }
 

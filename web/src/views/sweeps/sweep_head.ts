@@ -149,8 +149,8 @@ export class SweepHead {
     if (progress !== null) {
       const { passed, most } = progress;
       texts.push(passed < most ? `${passed} of ${most} flights` : `${most} flights`);
-      if (sweep.flying) {
-        if (progress.left_s > 0) texts.push(`about ${formatDuration(progress.left_s)} left`);
+      if (sweep.flying && progress.left_s !== null && progress.left_s > 0) {
+        texts.push(`about ${formatDuration(progress.left_s)} left`);
       }
       if (progress.spent_s > 0) texts.push(`${formatDuration(progress.spent_s)} flown`);
     }
