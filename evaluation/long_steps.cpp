@@ -15,6 +15,17 @@ std::int64_t step_ns(const Trajectory& truth, std::size_t i) {
   return truth.poses()[i].t_ns - truth.poses()[i - 1].t_ns;
 }
 
+/// Whether both poses of a step are the same as far as a pose can be measured: a truth that is only
+/// written when something moves.
+bool stands_still(const Trajectory& truth, std::size_t i) {
+  constexpr double kStillM = 0.01;
+  constexpr double kStillRad = 0.002;
+  const Pose& before = truth.poses()[i - 1].pose;
+  const Pose& after = truth.poses()[i].pose;
+  return (after.translation - before.translation).norm() <= kStillM &&
+         rotation_angle_rad(before.rotation, after.rotation) <= kStillRad;
+}
+
 std::int64_t limit_of(const Trajectory& truth) {
   std::vector<std::int64_t> steps_ns;
   for (std::size_t i = 1; i < truth.size(); ++i) steps_ns.push_back(step_ns(truth, i));
@@ -33,6 +44,7 @@ LongSteps long_steps(const Trajectory& truth) {
   steps.limit_ns = limit_of(truth);
   for (std::size_t i = 1; i < truth.size(); ++i) {
     if (truth.has_gap_before(i) || step_ns(truth, i) <= steps.limit_ns) continue;
+    if (stands_still(truth, i)) continue;
     steps.ending.push_back(i);
     steps.longest_ns = std::max(steps.longest_ns, step_ns(truth, i));
   }

@@ -11,7 +11,8 @@
 namespace overfly::evaluation {
 
 /// Steps between two poses that are longer than the larger of 1 s and ten times the median step,
-/// other than gaps: in them the truth is missing, and the aircraft may have turned.
+/// other than gaps: in them the truth is missing, and the aircraft may have turned. A step from a
+/// pose to the same one (0.01 m, 0.002 rad) is none of them: the truth stood still.
 struct LongSteps {
   std::int64_t limit_ns = 0;
   std::int64_t longest_ns = 0;      ///< 0 if there is none

@@ -105,6 +105,8 @@ class LogSink {
   virtual void event(LogEvent event) = 0;
   /// Something that was left out, or looks wrong: a sentence with a count.
   virtual void warning(const std::string& text) = 0;
+  /// Something about the whole recording that it does not state and that is taken for granted.
+  virtual void assumption(const std::string& text) { warning(text); }
   /// The number of bytes read so far. @return false to stop reading
   [[nodiscard]] virtual bool progress(std::uint64_t bytes) = 0;
 

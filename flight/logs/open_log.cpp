@@ -104,6 +104,7 @@ class OpeningSink final : public LogSink {
     // Where parts are left out, everything that counts what is missing is wrong.
     if (log_.parts.empty()) log_.warnings.push_back(text);
   }
+  void assumption(const std::string& text) override { log_.warnings.push_back(text); }
   [[nodiscard]] bool progress(std::uint64_t bytes) override {
     log_.size_bytes = std::max(log_.size_bytes, bytes);
     index_.end_block(bytes);

@@ -29,13 +29,13 @@ class FlightFiles {
                               const Scenario& scenario,
                               double timeout_s,
                               std::vector<std::string> options) const;
+  /// Why no estimator of a completed run ran; empty if one did.
+  [[nodiscard]] std::string none_ran(const std::string& id) const;
   /// Why a flight that has ended has no results (of any estimator); empty if it has.
   [[nodiscard]] std::string failure(const EndedFlight& ended, double timeout_s) const;
 
  private:
   [[nodiscard]] std::filesystem::path output(const std::string& id) const;
-  /// Why no estimator of a completed run ran; empty if one did.
-  [[nodiscard]] std::string none_ran(const std::string& id) const;
 
   std::filesystem::path folder_;
 };

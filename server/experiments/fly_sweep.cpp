@@ -182,7 +182,9 @@ class SweepFlyer {
       if (read) metrics = std::move(*read);
       if (!read) failure = read.error().message;
     }
-    if (!failure.empty() && flying->attempts <= sweep_.retries) {
+    // Estimators that did not start would not start now either.
+    if (!failure.empty() && flying->attempts <= sweep_.retries &&
+        failure != files_.none_ran(ended.id)) {
       ++flying->attempts;
       warn(failure + "; flown again");
       return launch(*flying);

@@ -34,6 +34,10 @@ constexpr std::array<const char*, 11> kSystemFolders{"/bin",
                                                      "/usr/local/bin",
                                                      "/usr/local/sbin"};
 
+/// Files of folders that hold no modules of a script: virtual environments, sweeps, runs, caches.
+constexpr std::array<const char*, 4> kMarksOfOthers{
+    "pyvenv.cfg", "sweep.json", "manifest.json", "CACHEDIR.TAG"};
+
 bool lies_in(const fs::path& folder, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), folder.begin(), folder.end()).first ==
          outer.end();
@@ -80,7 +84,10 @@ bool is_searched(const fs::directory_entry& folder) {
   const std::string name = folder.path().filename().string();
   std::error_code ignored;
   return folder.is_directory(ignored) && !folder.is_symlink(ignored) && !name.starts_with('.') &&
-         name != "__pycache__" && !fs::exists(folder.path() / "pyvenv.cfg", ignored);
+         name != "__pycache__" &&
+         std::none_of(kMarksOfOthers.begin(), kMarksOfOthers.end(), [&](const char* mark) {
+           return fs::exists(folder.path() / mark, ignored);
+         });
 }
 
 std::vector<fs::directory_entry> sorted_entries(const fs::path& folder, std::size_t most) {

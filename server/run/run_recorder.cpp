@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 #include <utility>
 
 #include "server/files/build_info.hpp"
@@ -9,6 +10,7 @@
 #include "server/files/jpeg.hpp"
 #include "server/files/png_file.hpp"
 #include "server/record/rows/vehicle_rows.hpp"
+#include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/record/run_manifest.hpp"
@@ -25,10 +27,33 @@ using Json = nlohmann::json;
 /// Close to lossless: estimators may be run again on these images.
 constexpr int kFrameQuality = 95;
 
-/// Whether a run failed before its first frame: it has nothing to be kept.
+/// Whether a folder contains only a run that failed before its first frame: nothing is to be kept.
 bool failed_at_start(const fs::path& folder) {
+  const std::set<fs::path> of_a_run = {manifest_file(folder),
+                                       scenario_file(folder),
+                                       created_file(folder),
+                                       timings_file(folder),
+                                       metrics_file(folder),
+                                       log_file(folder),
+                                       vehicle_file(folder),
+                                       truth_samples_file(folder),
+                                       CameraFiles::of_main_camera(folder).rows(),
+                                       CameraFiles::of_main_camera(folder).truth(),
+                                       folder / "cameras",
+                                       folder / "frames",
+                                       folder / "frames16",
+                                       folder / "debug",
+                                       folder / "points",
+                                       folder / "estimates",
+                                       folder / "estimators",
+                                       RunLock::file_of(folder)};
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failure)) {
+    if (!of_a_run.contains(entry.path())) return false;
+  }
   const Result<RunInfo> info = read_run_info(folder);
-  return info && info->status == RunStatus::kFailed && info->frames == 0;
+  return !failure && info && info->problem.empty() && info->status == RunStatus::kFailed &&
+         info->frames == 0;
 }
 
 /// Creates the folder unless it is empty, or contains only a run that failed at its start.
@@ -100,8 +125,8 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
                                                          const Scenario& scenario,
                                                          std::shared_ptr<RunTimeline> timeline,
                                                          bool publish_images) {
-  if (Status status = make_free_folder(folder); !status) return status.error();
   const FileStamp checked = FileStamp::of(manifest_file(folder));
+  if (Status status = make_free_folder(folder); !status) return status.error();
   Result<RunLock> lock = RunLock::take(folder);
   if (!lock) return lock.error();
   // Another process may have used the folder between the check and the lock.

@@ -192,7 +192,10 @@ Result<FileScore> score_file(const NamedTrajectory& truth,
   if (!options) return options.error();
   const Result<EstimateTrack> track = track_from(estimate);
   if (!track) return track.error();
-  const SplitTruth split = split_truth(truth.file.trajectory);
+  // Nearest and numbered poses are there: nothing is interpolated.
+  const bool interpolates =
+      options->association == evaluation::Association::kInterpolate || request.find_offsets;
+  const SplitTruth split = interpolates ? split_truth(truth.file.trajectory) : SplitTruth{};
   const Trajectory& true_poses = split.with_gaps ? *split.with_gaps : truth.file.trajectory;
   FileScore result;
   result.name = estimate.name;

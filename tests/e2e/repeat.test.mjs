@@ -56,7 +56,15 @@ describe('flying again', { skip, timeout: 900_000 }, () => {
     await dashboard.chooseEstimators('baseline_hold');
     first = await dashboard.launch();
     second = await launchShorter();
-    await entry(second).filter({ hasText: '· next' }).waitFor({ timeout: kPatience_ms });
+    // The first flight lasts 20 s.
+    await entry(second)
+      .filter({ hasText: '· next' })
+      .waitFor({ timeout: 30_000 })
+      .catch(async (error) => {
+        const { runs } = await getJson(stage.server, '/runs');
+        const shown = await entry(second).innerText();
+        throw new Error(`${error.message}\n${shown}\n${JSON.stringify(runs)}`);
+      });
     await entry(first)
       .filter({ hasText: / · \d+ s left/ })
       .waitFor({ timeout: kPatience_ms });

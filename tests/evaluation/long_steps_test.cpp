@@ -46,6 +46,18 @@ TEST(LongSteps, AreLongerThanASecondAndTenMedianSteps) {
   EXPECT_THAT(long_steps({}).ending, IsEmpty());
 }
 
+TEST(LongSteps, LeaveOutPausesOfATruthThatStandsStill) {
+  Trajectory truth;
+  const auto add = [&](double t_s, double x_m) {
+    const auto t_ns = static_cast<std::int64_t>(t_s * 1e9);
+    EXPECT_TRUE(truth.append({t_ns, {Eigen::Quaterniond::Identity(), {x_m, 0, 0}}}).ok());
+  };
+  for (int i = 0; i <= 10; ++i) add(0.1 * i, i);
+  add(6.0, 10.004);
+  add(11.0, 10.1);
+  EXPECT_THAT(long_steps(truth).ending, ElementsAre(12U));
+}
+
 TEST(LongSteps, LeaveOutGapsThatAreKnown) {
   Trajectory truth = with_hole(10.0, 15.0);
   const LongSteps steps = long_steps(truth);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied");
 
-constexpr std::string_view kIndexMagic = "OVFLIDX1";
+constexpr std::string_view kIndexMagic = "OVFLIDX2";
 constexpr std::size_t kIndexBlockBytes = 4 * 8 + 1;
 constexpr std::uint64_t kMaxIndexBytes = std::uint64_t{64} << 20U;
 constexpr std::uint8_t kDeclaresFlag = 1;

@@ -42,10 +42,10 @@ void CameraPoses::convert(RosSample& sample, const FrameTree& frames) {
   if (mount_ == Mount::kUnknown) {
     const bool known = frames.knows(sample.camera_frame);
     mount_ = T_camera_base ? Mount::kOfFile : known ? Mount::kAssumed : Mount::kNone;
-    if (mount_ == Mount::kAssumed) assumed_camera_ = sample.camera_frame;
     if (mount_ == Mount::kNone) return;
   }
   const bool is_stated = mount_ == Mount::kOfFile && T_camera_base;
+  if (!is_stated) assumed_camera_ = sample.camera_frame;
   move_to_body(is_stated ? *T_camera_base : T_camera_base_nadir(), sample);
 }
 

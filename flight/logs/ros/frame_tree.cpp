@@ -1,7 +1,8 @@
 #include "flight/logs/ros/frame_tree.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <utility>
 
 #include "flight/logs/ros/ros_messages.hpp"
 
@@ -16,6 +17,12 @@ constexpr int kMaxDepth = 16;
 std::string bare_frame(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   return std::string(name);
+}
+
+/// Frames by REP-105 in which an aircraft moves.
+bool is_of_the_world(const std::string& frame) {
+  constexpr std::array<std::string_view, 4> kFrames = {"world", "map", "odom", "earth"};
+  return std::find(kFrames.begin(), kFrames.end(), frame) != kFrames.end();
 }
 
 }  // namespace
@@ -49,21 +56,26 @@ void FrameTree::take(RosCursor message) {
   }
 }
 
-std::optional<Pose> FrameTree::upwards(std::string from, const std::string& to) const {
-  Pose T_frame_from;
+std::vector<FrameTree::Ancestor> FrameTree::ancestors_of(const std::string& from) const {
+  std::vector<Ancestor> ancestors = {{from, Pose()}};
   for (int depth = 0; depth < kMaxDepth; ++depth) {
-    if (from == to) return T_frame_from;
-    const auto link = links_.find(from);
-    if (link == links_.end()) return std::nullopt;
-    T_frame_from = link->second.T_parent_child * T_frame_from;
-    from = link->second.parent;
+    const auto link = links_.find(ancestors.back().frame);
+    if (link == links_.end() || is_of_the_world(link->second.parent)) break;
+    ancestors.push_back(
+        {link->second.parent, link->second.T_parent_child * ancestors.back().T_frame_from});
   }
-  return std::nullopt;
+  return ancestors;
 }
 
 std::optional<Pose> FrameTree::mount_of(const std::string& camera_frame) const {
-  if (const auto T_base_camera = upwards(camera_frame, kBaseFrame)) return T_base_camera->inverse();
-  return upwards(kBaseFrame, camera_frame);
+  const std::vector<Ancestor> of_camera = ancestors_of(camera_frame);
+  for (const Ancestor& base : ancestors_of(kBaseFrame)) {
+    for (const Ancestor& camera : of_camera) {
+      if (base.frame != camera.frame) continue;
+      return camera.T_frame_from.inverse() * base.T_frame_from;
+    }
+  }
+  return std::nullopt;
 }
 
 Pose T_camera_base_nadir() {

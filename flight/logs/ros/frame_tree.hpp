@@ -1,11 +1,13 @@
 // The frames of a recording of ROS messages, as its transforms state them. Private to ros.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/motion/pose.hpp"
 #include "flight/logs/ros/ros_cursor.hpp"
@@ -25,6 +27,8 @@ class FrameTree {
   /// A message has this frame.
   void see(std::string_view frame);
 
+  /// Number of frames and transforms known so far.
+  [[nodiscard]] std::size_t size() const { return seen_.size() + links_.size(); }
   /// Whether any message or transform has named the frame.
   [[nodiscard]] bool knows(const std::string& frame) const { return seen_.contains(frame); }
   /// T_camera_base: the aircraft's body in ROS's axes (base_link: forward, left, up) as seen from a
@@ -36,8 +40,12 @@ class FrameTree {
     std::string parent;
     Pose T_parent_child;
   };
-  /// T_to_from, if `to` is above `from` in the tree.
-  [[nodiscard]] std::optional<Pose> upwards(std::string from, const std::string& to) const;
+  struct Ancestor {
+    std::string frame;
+    Pose T_frame_from;
+  };
+  /// A frame and those above it, as far as they move with it: not the world.
+  [[nodiscard]] std::vector<Ancestor> ancestors_of(const std::string& from) const;
 
   std::map<std::string, Link> links_;  ///< by the child
   std::set<std::string, std::less<>> seen_;

@@ -142,7 +142,9 @@ std::optional<RosSample> decode_ros(RosType type, RosCursor message, const RosTo
       take_pose(message, header.frame_id, "", sample);
       break;
     case RosType::kOdometry: {
-      const std::string_view child_frame_id = message.text();
+      std::string_view child_frame_id = message.text();
+      // tf of ROS 1 began names with a slash.
+      if (child_frame_id.starts_with('/')) child_frame_id.remove_prefix(1);
       if (is_optical_frame(child_frame_id)) sample.camera_frame = child_frame_id;
       take_pose(message, header.frame_id, child_frame_id, sample);
       break;

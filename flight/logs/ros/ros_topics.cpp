@@ -118,9 +118,14 @@ std::optional<RosSample> RosTopics::decode(const Stream& stream,
 void RosTopics::take_frames(const Stream& stream, std::span<const std::uint8_t> data) {
   std::optional<RosCursor> message = ros_cursor_of(data, stream.encoding);
   if (!message) return;
-  if (stream.transforms) return frames_.take(*message);
-  const std::string_view frame = take_header(*message).frame_id;
-  if (message->ok()) frames_.see(frame);
+  const std::size_t known = frames_.size();
+  if (stream.transforms) {
+    frames_.take(*message);
+  } else {
+    const std::string_view frame = take_header(*message).frame_id;
+    if (message->ok()) frames_.see(frame);
+  }
+  if (frames_.size() != known) sink_.declaration();
 }
 
 void RosTopics::take(Topic topic,
@@ -219,9 +224,9 @@ void RosTopics::report() {
   for (const Stream& stream : streams_) {
     const std::string& camera = stream.camera_poses.assumed_camera();
     if (camera.empty()) continue;
-    sink_.warning(stream.topic + " has the poses of the camera " + camera +
-                  ", and no transform between base_link and it states the camera's mount: it is "
-                  "taken to look down, with the top of its image to the nose");
+    sink_.assumption(stream.topic + " has the poses of the camera " + camera +
+                     ", and no transform between base_link and it states the camera's mount: it is "
+                     "taken to look down, with the top of its image to the nose");
   }
   std::uint64_t implausible = 0;
   for (const Stream& stream : streams_) implausible += stream.clock.implausible();

@@ -31,23 +31,42 @@ Bytes transform(std::int64_t t_ns, const char* parent, const char* child, const 
   return message.vector(T.translation).quaternion(T.rotation).bytes();
 }
 
+/// How the transforms connect the camera with base_link.
+enum class Tree {
+  kCameraAbove,  ///< directly, as Overfly's exports do
+  kByLink,       ///< from base_link by way of camera_link, as robots have it
+  kSiblings,     ///< both below imu_link
+};
+
 /// What is recorded: by the channels /tf, /camera/truth, /odom, /camera/image_raw.
 struct Recording {
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
-  int first_mount = kFrames;    ///< frame of the first transform to base_link
-  bool by_camera_link = false;  ///< from base_link by way of camera_link, as robots have it
+  int first_mount = kFrames;  ///< frame of the first transform to base_link
+  Tree tree = Tree::kCameraAbove;
   const char* topic = "/camera/truth";
+  const char* odometry_child = "camera_optical_frame";
   bool transforms = true;  ///< of the camera in the world
 };
 
 Bytes mount_message(std::int64_t t_ns, const Recording& recording) {
   const Pose T_camera_base =
       recording.T_body_camera.inverse() * Pose{kFluFrd, Eigen::Vector3d::Zero()};
-  if (!recording.by_camera_link) {
+  if (recording.tree == Tree::kCameraAbove) {
     return mcap_message(1, 0, transform(t_ns, "camera_optical_frame", "base_link", T_camera_base));
   }
   const Pose T_base_link{Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};
   const Pose T_link_camera = T_base_link.inverse() * T_camera_base.inverse();
+  if (recording.tree == Tree::kSiblings) {
+    Bytes siblings = mcap_message(1, 0, transform(t_ns, "imu_link", "base_link", T_base_link));
+    append(
+        siblings,
+        mcap_message(
+            1,
+            0,
+            transform(
+                t_ns, "imu_link", "camera_optical_frame", T_base_link * T_camera_base.inverse())));
+    return siblings;
+  }
   Bytes bytes = mcap_message(1, 0, transform(t_ns, "base_link", "camera_link", T_base_link));
   append(bytes,
          mcap_message(1, 0, transform(t_ns, "camera_link", "camera_optical_frame", T_link_camera)));
@@ -76,7 +95,7 @@ Bytes records_of(const Recording& recording) {
            mcap_message(
                3,
                0,
-               testing::odometry(Wire::kCdrLittle, t_ns, p, R, "world", "camera_optical_frame")));
+               testing::odometry(Wire::kCdrLittle, t_ns, p, R, "world", recording.odometry_child)));
   }
   return records;
 }
@@ -104,10 +123,12 @@ TEST_F(CameraPosesOfLogs, BecomeThoseOfTheBodyByTheMountInTheFile) {
       Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY())) * R_body_camera_nadir(),
       {0.4, 0.0, 0.1}};
   for (const int first : {0, 7}) {
-    for (const bool by_camera_link : {false, true}) {
+    for (const Tree tree : {Tree::kCameraAbove, Tree::kByLink, Tree::kSiblings}) {
       recording.first_mount = first;
-      recording.by_camera_link = by_camera_link;
-      recording.transforms = !by_camera_link;  // a frame has one parent
+      recording.tree = tree;
+      recording.transforms = tree == Tree::kCameraAbove;  // a frame has one parent
+      recording.odometry_child =
+          first == 0 ? "camera_optical_frame" : "/camera_optical_frame";  // as tf of ROS 1
       const auto log = open_bytes(whole_file(records_of(recording)));
       ASSERT_TRUE(log.ok()) << log.error().message;
       EXPECT_THAT(log->warnings, IsEmpty());
