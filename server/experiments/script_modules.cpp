@@ -36,7 +36,7 @@ constexpr std::array<const char*, 11> kSystemFolders{"/bin",
 
 /// Files of folders that hold no modules of a script: virtual environments, sweeps, runs, caches.
 constexpr std::array<const char*, 4> kMarksOfOthers{
-    "pyvenv.cfg", "sweep.json", "manifest.json", "CACHEDIR.TAG"};
+    "pyvenv.cfg", "sweep.json", "frames.jsonl", "CACHEDIR.TAG"};
 
 bool lies_in(const fs::path& folder, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), folder.begin(), folder.end()).first ==

@@ -112,9 +112,10 @@ TEST_F(FlySweep, AnEstimatorThatNeverRanHasNoResult) {
   const fs::path without = own_folder() / "without";
   copy_run_without({"p", "q"}, without);
   write_program("cp -r '" + without.string() + "' \"$4\"; exit");
-  const Sweep one = sweep(R"("axes": [], "retries": 0)");
+  const Sweep one = sweep(R"("axes": [], "retries": 3)");
   const auto flown = fly(one);
   ASSERT_TRUE(flown.ok()) << flown.error().message;
+  EXPECT_EQ(flights(), 1U) << "it would not start now either";
   EXPECT_EQ(progress_.failed, 1U);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("estimator p never ran: there is no such file")));
   const auto rows = summary_of(*flown, folder(), evaluation::AlignmentMode::kSim3);

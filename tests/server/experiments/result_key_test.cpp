@@ -146,10 +146,18 @@ TEST_F(PythonEstimator, KeyFollowsTheModulesNextToTheScript) {
     write(file, "anything");
     EXPECT_EQ(key_of(command), key) << file;
   }
-  for (const char* file : {"venv/pyvenv.cfg", "venv/lib/package.py"}) {
+  for (const char* file : {"venv/pyvenv.cfg",
+                           "venv/lib/package.py",
+                           "out/sweep.json",
+                           "out/a.py",
+                           "flown/frames.jsonl",
+                           "flown/a.py"}) {
     write(file, "anything");
   }
-  EXPECT_EQ(key_of(command), key) << "installed packages do not count";
+  EXPECT_EQ(key_of(command), key) << "installed packages, sweeps and runs do not count";
+  write("models/manifest.json", "{}");
+  write("models/net.py", "anything");
+  EXPECT_NE(key_of(command), key);
 }
 
 TEST_F(PythonEstimator, IsFoundByItsFirstLineAndThroughLinks) {
