@@ -8,6 +8,8 @@
 #include <map>
 #include <optional>
 
+#include "server/scoring/camera_metrics.hpp"
+
 namespace overfly::app {
 namespace {
 
@@ -128,9 +130,6 @@ std::string outcome_text(const evaluation::Score& score) {
   return text;
 }
 
-/// A camera is reported if more of its frames than this see hardly any imagery.
-constexpr double kReportedVoidPercent = 10.0;
-
 /// @param name  of the camera, for people
 std::string notes_of(const std::string& name, const server::CameraMetrics& camera) {
   std::string notes;
@@ -141,15 +140,8 @@ std::string notes_of(const std::string& name, const server::CameraMetrics& camer
         name.c_str(),
         camera.texture.texels_per_pixel_median);
   }
-  const double void_percent = 100.0 * static_cast<double>(camera.mostly_void_frames) /
-                              std::max(1.0, static_cast<double>(camera.frames));
-  if (void_percent > kReportedVoidPercent) {
-    notes += formatted(
-        "warning: no imagery: in %.0f %% of the frames more than half of the image of %s is "
-        "without imagery\n",
-        void_percent,
-        name.c_str());
-  }
+  const std::string without_imagery = server::void_words(name, camera);
+  if (!without_imagery.empty()) notes += "warning: no imagery: " + without_imagery + "\n";
   if (camera.late_tiles > 0) {
     notes += formatted(
         "warning: %s: %lld tiles were late and drawn at a coarser level, in %lld frames\n",

@@ -1,6 +1,7 @@
 #include "server/scoring/camera_metrics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,9 @@ double median_of(std::vector<double> values) {
 constexpr double kTextureLimit = 0.5;
 
 constexpr double kMostlyVoid = 0.5;
+
+/// A camera is reported if more of its frames than this see hardly any imagery.
+constexpr double kReportedVoidShare = 0.1;
 
 TextureMetrics texture_of(const std::vector<FrameRow>& frames) {
   TextureMetrics texture;
@@ -67,6 +71,14 @@ CameraMetrics camera_metrics_from(const CameraRecords& camera) {
   metrics.void_fraction_mean =
       void_sum / std::max<double>(1.0, static_cast<double>(camera.frames.size()));
   return metrics;
+}
+
+std::string void_words(const std::string& name, const CameraMetrics& camera) {
+  const double share = static_cast<double>(camera.mostly_void_frames) /
+                       std::max(1.0, static_cast<double>(camera.frames));
+  if (share <= kReportedVoidShare) return "";
+  return "in " + std::to_string(std::lround(100.0 * share)) +
+         " % of the frames more than half of the image of " + name + " is without imagery";
 }
 
 }  // namespace overfly::server

@@ -7,6 +7,7 @@
 #include "core/text/percent.hpp"
 #include "core/time.hpp"
 #include "server/report/run/words.hpp"
+#include "server/scoring/camera_metrics.hpp"
 
 namespace overfly::server::report {
 namespace {
@@ -104,6 +105,8 @@ void RunWarnings::add_of_cameras(const ReportRun& run) {
            figure_text(camera.texture.texels_per_pixel_median) +
            " texels per pixel (median), below 0.5: the imagery, not the camera, limits the result");
     }
+    const std::string without_imagery = void_words(name, camera);
+    if (!without_imagery.empty()) warn("no imagery: " + without_imagery);
     const auto& frames = run.frames[i];
     const auto overexposed = std::count_if(frames.begin(), frames.end(), [](const FrameRow& row) {
       return row.saturated_fraction > kMostSaturated;

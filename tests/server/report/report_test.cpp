@@ -210,6 +210,23 @@ TEST_F(Report, MarksAnOverconfidentEstimator) {
   EXPECT_THAT(made({run_folder()}).html, Not(HasSubstr("Honesty")));
 }
 
+TEST_F(Report, WarnsOfAFlightWithoutImagery) {
+  const std::string warning =
+      "no imagery: in 100 % of the frames more than half of the image of the camera is without "
+      "imagery";
+  EXPECT_THAT(made({run_folder()}).html, Not(HasSubstr("no imagery:")));
+  const fs::path run = copy();
+  const auto lines = read_lines(run / "frames.jsonl");
+  ASSERT_TRUE(lines.ok());
+  std::string rows;
+  for (Json row : *lines) {
+    row["void_fraction"] = 0.75;
+    rows += row.dump() + "\n";
+  }
+  write_text(run / "frames.jsonl", rows);
+  EXPECT_THAT(made({run}).html, HasSubstr(warning));
+}
+
 TEST_F(Report, TellsWhyThereIsNoDriftBetweenFixes) {
   const std::string html = made({run_folder()}).html;
   EXPECT_THAT(html, HasSubstr("Drift between position fixes"));

@@ -19,5 +19,16 @@ TEST(CameraMetrics, CountTheFramesThatAreMostlyWithoutImagery) {
   EXPECT_EQ(metrics.texture.texels_per_pixel_median, 2.0);
 }
 
+TEST(CameraMetrics, ImageryIsReportedAsMissingInMoreThanATenthOfTheFrames) {
+  CameraMetrics metrics;
+  metrics.frames = 100;
+  metrics.mostly_void_frames = 10;
+  EXPECT_EQ(void_words("the camera", metrics), "");
+  metrics.mostly_void_frames = 34;
+  EXPECT_EQ(void_words("the camera", metrics),
+            "in 34 % of the frames more than half of the image of the camera is without imagery");
+  EXPECT_EQ(void_words("the camera", CameraMetrics{}), "");
+}
+
 }  // namespace
 }  // namespace overfly::server

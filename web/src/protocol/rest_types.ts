@@ -174,6 +174,8 @@ export interface Metrics {
   estimators?: Record<string, EstimatorMetrics>;
   camera?: {
     frames?: number;
+    /** More than half of the image is without imagery; missing if there are none. */
+    mostly_void_frames?: number;
     texels_per_pixel?: { min?: number | null; median?: number | null };
   };
   texture?: {

@@ -11,6 +11,7 @@ export const kDefaultAlignment = 'init_scale';
  * Below this value the imagery has less detail than the camera has pixels, and limits the estimate.
  */
 export const kTextureLimit = 0.5;
+const kReportedVoidShare = 0.1;
 
 export interface ErrorRow {
   key: string;
@@ -178,6 +179,13 @@ export function textureHint(median: number | null): string {
     'The errors say more about the imagery than about the estimators. Fly higher, use a wider ' +
     'field of view or fewer pixels, or give the world finer imagery.'
   );
+}
+
+/** Share of the frames that hardly see imagery, if so many that it must be said; else null. */
+export function reportedVoidShare(metrics: Metrics | null): number | null {
+  const { frames = 0, mostly_void_frames: mostlyVoid = 0 } = metrics?.camera ?? {};
+  const share = frames > 0 ? mostlyVoid / frames : 0;
+  return share > kReportedVoidShare ? share : null;
 }
 
 export function outcomeText({ outcome, outcome_time_s }: EstimatorMetrics): string {

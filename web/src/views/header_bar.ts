@@ -1,6 +1,11 @@
 // The top bar: the run, its status, and the connection to the server.
 import type { State, Topic } from '../store/state';
-import { texelsPerPixel, textureHint, textureLimited } from '../store/error_table';
+import {
+  reportedVoidShare,
+  texelsPerPixel,
+  textureHint,
+  textureLimited,
+} from '../store/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
@@ -16,6 +21,11 @@ export class HeaderBar implements View {
   private readonly flag = h('span', {
     class: 'chip warn',
     'data-role': 'texture-limited',
+    hidden: true,
+  });
+  private readonly withoutImagery = h('span', {
+    class: 'chip warn',
+    'data-role': 'without-imagery',
     hidden: true,
   });
   private readonly changed = h('span', {
@@ -76,6 +86,7 @@ export class HeaderBar implements View {
       this.title,
       this.status,
       this.flag,
+      this.withoutImagery,
       this.changed,
       this.report.root,
       this.error,
@@ -120,6 +131,12 @@ export class HeaderBar implements View {
     const figure = median === null ? '' : `: ${formatNumber(median, 2)} texels/px`;
     setText(this.flag, `Texture-limited${figure}`);
     this.flag.title = textureHint(median);
+    const voidShare = reportedVoidShare(state.metrics);
+    this.withoutImagery.hidden = voidShare === null;
+    setText(this.withoutImagery, `Without imagery: ${formatPercent(voidShare, 0)} of the frames`);
+    this.withoutImagery.title =
+      'More than half of the image is without imagery in these frames: estimators have little to ' +
+      'see there. Fly over the imagery, or give the world more of it.';
     document.title = run === null ? 'Overfly' : `${run.title} · Overfly`;
   }
 

@@ -3,6 +3,7 @@ import type { Metrics } from '../../src/protocol/rest_types';
 import {
   alignmentModes,
   errorTable,
+  reportedVoidShare,
   texelsPerPixel,
   textureHint,
   textureLimited,
@@ -110,6 +111,19 @@ describe('errorTable', () => {
   it("offers the alignments in the metrics, the paper's first", () => {
     expect(alignmentModes(metrics)).toEqual(['init_scale', 'sim3']);
     expect(alignmentModes(null)).toEqual([]);
+  });
+});
+
+describe('reportedVoidShare', () => {
+  it('is that of flights which leave the imagery for more than a tenth', () => {
+    const flown = (mostlyVoid: number): Metrics => ({
+      camera: { frames: 200, mostly_void_frames: mostlyVoid },
+    });
+    expect(reportedVoidShare(flown(50))).toBe(0.25);
+    expect(reportedVoidShare(flown(20))).toBeNull();
+    expect(reportedVoidShare({ camera: { frames: 200 } })).toBeNull();
+    expect(reportedVoidShare({ camera: { frames: 0, mostly_void_frames: 0 } })).toBeNull();
+    expect(reportedVoidShare(null)).toBeNull();
   });
 });
 
