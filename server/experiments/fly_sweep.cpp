@@ -10,8 +10,8 @@
 #include <thread>
 #include <utility>
 
-#include "server/experiments/flight_files.hpp"
-#include "server/experiments/flight_process.hpp"
+#include "server/experiments/flights/flight_files.hpp"
+#include "server/experiments/flights/flight_process.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_lock.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/experiments/flight_executor.hpp"
+#include "server/experiments/flights/flight_executor.hpp"
 #include "server/experiments/pictures/flight_frame_cache.hpp"
 #include "server/experiments/sweep_plan.hpp"
 #include "server/experiments/sweep_progress.hpp"

@@ -8,8 +8,8 @@
 #include "core/measure/sha256.hpp"
 #include "core/text/number_text.hpp"
 #include "evaluation/statistics/wilson.hpp"
+#include "server/experiments/keys/result_key.hpp"
 #include "server/experiments/pictures/picture_key.hpp"
-#include "server/experiments/result_key.hpp"
 #include "vo_bridges/process/child/program.hpp"
 
 namespace overfly::server::experiments {

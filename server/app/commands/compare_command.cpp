@@ -9,7 +9,7 @@
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/score_table.hpp"
-#include "server/experiments/compare_sweeps.hpp"
+#include "server/experiments/comparison/compare_sweeps.hpp"
 #include "server/files/whole_file.hpp"
 
 namespace overfly::app {

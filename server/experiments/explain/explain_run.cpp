@@ -10,7 +10,7 @@
 #include "core/text/number_text.hpp"
 #include "server/experiments/explain/data_limit.hpp"
 #include "server/experiments/explain/explained_run.hpp"
-#include "server/experiments/flight_files.hpp"
+#include "server/experiments/flights/flight_files.hpp"
 #include "server/record/run_lock.hpp"
 
 namespace overfly::server::experiments {

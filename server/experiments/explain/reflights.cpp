@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/cancel.hpp"
-#include "server/experiments/flight_files.hpp"
+#include "server/experiments/flights/flight_files.hpp"
+#include "server/experiments/keys/result_key.hpp"
 #include "server/experiments/pictures/picture_key.hpp"
-#include "server/experiments/result_key.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/scenario/document/scenario_file.hpp"
 #include "server/scoring/run_metrics_json.hpp"

@@ -14,7 +14,7 @@
 #include "core/outside/source_policy.hpp"
 #include "core/result.hpp"
 #include "server/experiments/explain/explanation.hpp"
-#include "server/experiments/flight_process.hpp"
+#include "server/experiments/flights/flight_process.hpp"
 #include "server/experiments/pictures/flight_frame_cache.hpp"
 
 namespace overfly::server::experiments {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/experiments/flight_executor.hpp"
+#include "server/experiments/flights/flight_executor.hpp"
 #include "server/experiments/jobs/job_folder.hpp"
 #include "server/experiments/jobs/worker_supply.hpp"
 

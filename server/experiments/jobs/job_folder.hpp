@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/experiments/flight_executor.hpp"
+#include "server/experiments/flights/flight_executor.hpp"
 #include "server/runs/run_memory.hpp"
 
 namespace overfly::server::experiments {

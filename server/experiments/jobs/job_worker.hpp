@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "server/experiments/flight_process.hpp"
+#include "server/experiments/flights/flight_process.hpp"
 #include "server/experiments/jobs/job_folder.hpp"
 #include "server/experiments/pictures/flight_frame_cache.hpp"
 #include "server/runs/run_memory.hpp"

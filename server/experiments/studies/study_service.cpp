@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/barrier.hpp"
-#include "server/experiments/program_process.hpp"
+#include "server/experiments/flights/program_process.hpp"
 #include "server/experiments/studies/prepare_study.hpp"
 #include "server/experiments/studies/study_result.hpp"
 #include "server/files/file_stamp.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/text/shown_path.hpp"
-#include "server/experiments/compare_sweeps.hpp"
+#include "server/experiments/comparison/compare_sweeps.hpp"
 #include "server/experiments/service/sweep_files.hpp"
 #include "server/experiments/tables/sweep_tables.hpp"
 #include "server/net/http/error_response.hpp"

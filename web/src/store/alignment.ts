@@ -2,7 +2,7 @@
 import type { RestClient } from '../connection/rest_client';
 import { RestError } from '../connection/rest_error';
 import type { Metrics } from '../protocol/rest_types';
-import { alignmentModes, allMetrics, kDefaultAlignment } from './error_table';
+import { alignmentModes, allMetrics, kDefaultAlignment } from './errors/error_table';
 import type { Notices } from './notices';
 import type { EstimateRows } from './run_data';
 import { estimateRows } from './run_data';

@@ -12,7 +12,7 @@ import type {
 } from '../protocol/rest_types';
 import type { CalibrationPage } from './calibration/calibration_page';
 import { initialCalibrationPage } from './calibration/calibration_page';
-import { kDefaultAlignment } from './error_table';
+import { kDefaultAlignment } from './errors/error_table';
 import type { LogPage } from './logs/log_browser';
 import { initialLogPage } from './logs/log_browser';
 import type { MissionPage } from './missions/mission_page';
@@ -20,7 +20,7 @@ import { initialMissionPage } from './missions/mission_page';
 import type { PictureRate } from './pictures/picture_rates';
 import type { Zoom } from './pictures/picture_zoom';
 import type { Hover } from './pictures/pixel_probe';
-import type { Clock, RunPlayback } from './run_playback';
+import type { Clock, RunPlayback } from './playback/run_playback';
 import type { ConnectState } from './vehicle/vehicle_connect';
 import { initialConnect } from './vehicle/vehicle_connect';
 import { RunData } from './run_data';
@@ -35,7 +35,7 @@ import { initialStudyPage } from './studies/study_page';
 import type { ScorePage } from './scoring/score_page';
 import { initialScorePage } from './scoring/score_page';
 import type { SensorSamples } from './sensors/sensors';
-import type { PlotWindow } from './time_window';
+import type { PlotWindow } from './playback/time_window';
 import type { TrackColour } from './track_colours';
 import type { AlignedEstimates, Picture, WatchedRun } from './watched_run';
 

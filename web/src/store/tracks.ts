@@ -1,5 +1,5 @@
 // The tracks of the watched runs: the true one and one of each estimator.
-import { kDefaultAlignment } from './error_table';
+import { kDefaultAlignment } from './errors/error_table';
 import type { State } from './state';
 import type { Table } from './table';
 import type { TrackColour } from './track_colours';

@@ -1,6 +1,6 @@
 // Synchronises the address bar and the store, so that a copied address shows the same picture.
-import { linkOf, openLink } from '../store/link_state';
-import { formatPermalink, parsePermalink } from '../store/permalink';
+import { linkOf, openLink } from '../store/link/link_state';
+import { formatPermalink, parsePermalink } from '../store/link/permalink';
 import type { Context } from './view';
 
 const kWrite_ms = 400;

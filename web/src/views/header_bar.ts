@@ -5,7 +5,7 @@ import {
   texelsPerPixel,
   textureHint,
   textureLimited,
-} from '../store/error_table';
+} from '../store/errors/error_table';
 import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';

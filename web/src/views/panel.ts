@@ -1,6 +1,6 @@
 // The frame of every panel: title, tools, and the number of the frame that it shows.
 import type { RateBadge } from '../store/pictures/picture_rates';
-import type { RunPlayback } from '../store/run_playback';
+import type { RunPlayback } from '../store/playback/run_playback';
 import { h, setAttribute, setText } from './dom';
 
 export interface Panel {

@@ -1,11 +1,11 @@
 // The parts of the screen: header, panels, timeline, and what lies over them.
 import { Frame } from './frame/frame';
 import { HeaderBar } from './header_bar';
-import { HelpOverlay } from './help_overlay';
+import { HelpOverlay } from './commands/help_overlay';
 import { NoticesView } from './notices_view';
 import { acceptFiles, makePages } from './pages';
-import { Palette } from './palette';
-import { listenToKeys } from './shortcuts';
+import { Palette } from './commands/palette';
+import { listenToKeys } from './commands/shortcuts';
 import { Timeline } from './timeline';
 import { ConnectDialog } from './vehicle/connect_dialog';
 import { kTopics } from '../store/state';

@@ -2,7 +2,7 @@
 import type { Topic } from '../store/state';
 import { clockSpan_ns } from '../store/state';
 import { formatTime } from '../store/format';
-import { kSpeeds } from '../store/player';
+import { kSpeeds } from '../store/playback/player';
 import { h, setAttribute, setText } from './dom';
 import type { IconName } from './icons';
 import { icon } from './icons';

@@ -12,7 +12,7 @@ import { hueOf } from '../store/plots/plot_specs';
 import { curveStyle, faultColour } from './colours';
 import { h, promptlyPerFrame, rebuild, setAttribute, setText, wholeLabel } from './dom';
 import { paint } from './paint';
-import { paintStateLane, stateLegend } from './state_lanes';
+import { paintStateLane, stateLegend } from './status/state_lanes';
 import type { Context } from './view';
 
 const kStripHeight_px = 4;

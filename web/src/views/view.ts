@@ -5,7 +5,7 @@ import type { Cameras } from '../store/pictures/cameras';
 import type { PixelProbe } from '../store/pictures/pixel_probe';
 import type { PlotTime } from '../store/plots/plot_time';
 import type { Store, Topic } from '../store/state';
-import type { Player } from '../store/player';
+import type { Player } from '../store/playback/player';
 import type { SceneControl } from '../store/scene/scene_control';
 import type { ScenarioDesk } from '../store/scenario/scenario_desk';
 import type { Sensors } from '../store/sensors/sensors';

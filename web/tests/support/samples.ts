@@ -1,6 +1,6 @@
 // Values as the server sends them.
 import type { RunInstant } from '../../src/protocol/messages';
-import type { RunPlayback } from '../../src/store/run_playback';
+import type { RunPlayback } from '../../src/store/playback/run_playback';
 import type { EstimatorStatus, Run } from '../../src/protocol/rest_types';
 
 export function sampleRun(change: Partial<Run> = {}): Run {

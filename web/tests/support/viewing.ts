@@ -1,7 +1,7 @@
 // A session on a socket whose other end is the test.
 import { StreamClient } from '../../src/connection/stream_client';
 import { Notices } from '../../src/store/notices';
-import { Player } from '../../src/store/player';
+import { Player } from '../../src/store/playback/player';
 import { SceneControl } from '../../src/store/scene/scene_control';
 import { Session } from '../../src/store/session';
 import { Store } from '../../src/store/state';

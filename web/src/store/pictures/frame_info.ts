@@ -1,6 +1,6 @@
 // Details of one frame's image: exposure, texture, tiles, faults.
 import { formatNumber, formatPercent } from '../format';
-import { kTextureLimit } from '../error_table';
+import { kTextureLimit } from '../errors/error_table';
 import { faultMeaning } from '../fault_spans';
 import type { RunData } from '../run_data';
 import { lastAtOrBefore } from '../table';

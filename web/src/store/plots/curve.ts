@@ -1,6 +1,6 @@
 // A curve over time, and what of it is drawn: few points that look like all of them.
 import { lastAtOrBefore } from '../table';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 
 export interface Curve {
   /** Ascending. */

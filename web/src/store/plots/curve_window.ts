@@ -1,6 +1,6 @@
 // The drawn part of a curve. While it is moved, what was made of the values is kept.
 import { lastAtOrBefore } from '../table';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 import type { Curve, Polyline } from './curve';
 import { decimated } from './curve';
 

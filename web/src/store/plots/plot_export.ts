@@ -6,7 +6,7 @@ import type { CurveHue, PlotSpec } from './plot_specs';
 import { paddedRange } from './plot_range';
 import { curveExtent, legendNames, sharedExtent } from './shared_extent';
 import { escaped, svgFile } from './svg_pen';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 
 /** All values of all curves: one line each. Times are those of the clock. */
 export function plotsCsv(specs: readonly PlotSpec[]): string {

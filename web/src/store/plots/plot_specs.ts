@@ -2,7 +2,7 @@
 import type { SensorCurve } from '../../protocol/sensor_types';
 import type { SeriesInfo } from '../../protocol/messages';
 import { isActive } from '../../protocol/rest_types';
-import { kTextureLimit } from '../error_table';
+import { kTextureLimit } from '../errors/error_table';
 import type { Axis } from '../run_data';
 import { kAxes } from '../run_data';
 import type { State } from '../state';

@@ -1,8 +1,8 @@
 // The part of the clock's time that all plots show together: they are zoomed and moved as one.
 import type { Store } from '../state';
 import { clockSpan_ns } from '../state';
-import type { Span } from '../time_window';
-import { following, follows, panned, zoomed } from '../time_window';
+import type { Span } from '../playback/time_window';
+import { following, follows, panned, zoomed } from '../playback/time_window';
 
 export class PlotTime {
   private clock_s = NaN;

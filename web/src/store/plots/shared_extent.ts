@@ -1,7 +1,7 @@
 // What the axes of a plot enclose: everything but estimates that have diverged, next to which all other
 // curves would be one line.
 import type { Polyline } from './curve';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 
 /** What a curve or a track covers: an interval for each axis. */
 export interface Extent {

@@ -1,7 +1,7 @@
 // State of the page that scores trajectories against each other.
 import type { LogEntry } from '../../protocol/log_types';
 import type { Evaluation, TrajectoryList } from '../../protocol/score_types';
-import { kDefaultAlignment } from '../error_table';
+import { kDefaultAlignment } from '../errors/error_table';
 
 export interface ScorePage {
   open: boolean;

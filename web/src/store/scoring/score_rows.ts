@@ -1,8 +1,8 @@
 // The table of scores: one row for each estimate and alignment.
 import type { Evaluation } from '../../protocol/score_types';
-import type { ErrorColumn } from '../error_figures';
-import { columnHead, errorColumns, errorCsvValues, kErrorCsvHead } from '../error_figures';
-import { kDefaultAlignment } from '../error_table';
+import type { ErrorColumn } from '../errors/error_figures';
+import { columnHead, errorColumns, errorCsvValues, kErrorCsvHead } from '../errors/error_figures';
+import { kDefaultAlignment } from '../errors/error_table';
 import { formatNumber, formatPercent, kNothing } from '../format';
 import type { TextFormat } from '../table_text';
 import { csvTable, latexTable, markdownTable } from '../table_text';

@@ -12,7 +12,7 @@ import { kAxisLabels } from '../plots/plot_specs';
 import { csvLine } from '../csv';
 import { lastAtOrBefore } from '../table';
 import { shortName } from './score_desk';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 
 const kErrors = [
   { table: 'errors', column: 'position_m', label: 'Position error', unit: 'm' },

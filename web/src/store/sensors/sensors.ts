@@ -4,7 +4,7 @@ import type { RestClient } from '../../connection/rest_client';
 import type { SensorCurves } from '../../protocol/sensor_types';
 import { isActive } from '../../protocol/rest_types';
 import type { Store } from '../state';
-import type { Span } from '../time_window';
+import type { Span } from '../playback/time_window';
 
 export interface SensorSamples {
   /** Of this run. */

@@ -1,8 +1,8 @@
 // Makes the panels. Their names and titles are in store/layouts/panel_names.ts.
 import { CameraPanel } from '../pictures/camera_panel';
-import { ErrorPanel } from '../error_panel';
+import { ErrorPanel } from '../status/error_panel';
 import { Launcher } from '../launcher';
-import { LogPanel } from '../log_panel';
+import { LogPanel } from '../status/log_panel';
 import { DebugPanel } from '../pictures/debug_panel';
 import { PlotsPanel } from '../plots/plots_panel';
 import { RunList } from '../runs/run_list';
@@ -44,7 +44,7 @@ export const kPanelMakers: Record<PanelName, (context: Context) => View | Promis
     return new RepeatsPanel(context);
   },
   status: async (context) => {
-    const { StatusPanel } = await import('../status_panel');
+    const { StatusPanel } = await import('../status/status_panel');
     return new StatusPanel(context);
   },
 };

@@ -11,12 +11,12 @@ import { paddedRange } from '../../store/plots/plot_range';
 import type { PlotSpec } from '../../store/plots/plot_specs';
 import { curveExtent, sharedExtent } from '../../store/plots/shared_extent';
 import { spanAt, stateName } from '../../store/state_spans';
-import type { Span } from '../../store/time_window';
+import type { Span } from '../../store/playback/time_window';
 import { axisNumbers } from './axis_numbers';
 import { BeyondNote } from './beyond_note';
 import { paintCurves } from './curve_painter';
 import { plotTip } from './plot_tip';
-import { paintStateLane } from '../state_lanes';
+import { paintStateLane } from '../status/state_lanes';
 import { steerTime } from './time_gestures';
 
 export interface PlotActions {

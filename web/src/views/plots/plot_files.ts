@@ -1,7 +1,7 @@
 // The menu that saves what a panel shows: CSV, SVG or PNG.
 import { plotsCsv, plotsSvg } from '../../store/plots/plot_export';
 import type { PlotSpec } from '../../store/plots/plot_specs';
-import type { Span } from '../../store/time_window';
+import type { Span } from '../../store/playback/time_window';
 import { curveStyle } from '../colours';
 import { download } from '../download';
 import { h } from '../dom';

@@ -2,7 +2,7 @@
 import type { CurveHue, PlotSpec } from '../../store/plots/plot_specs';
 import { curveStyle } from '../colours';
 import { h, rebuild } from '../dom';
-import { stateLegend } from '../state_lanes';
+import { stateLegend } from '../status/state_lanes';
 
 /** A plot over time has lanes, too. */
 type Named = Pick<PlotSpec, 'lanes'> & { curves: readonly { name: string; hue: CurveHue }[] };

@@ -11,7 +11,7 @@ import type { Topic } from '../../store/state';
 import { shownAlignment } from '../../store/state';
 import { kPanels } from '../../store/layouts/panel_names';
 import { AlignmentLegend } from '../alignment_legend';
-import { EstimatorTable } from '../estimator_table';
+import { EstimatorTable } from '../status/estimator_table';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Panel } from '../panel';
 import { frameOf, makePanel } from '../panel';

@@ -1,5 +1,5 @@
 // An entry of the list of runs: what was flown, how it went, and what can be done with it.
-import { textureHint } from '../../store/error_table';
+import { textureHint } from '../../store/errors/error_table';
 import { formatDate, formatDuration, formatNumber } from '../../store/format';
 import { bestFirst } from '../../store/runs/run_order';
 import type { RunTraits } from '../../store/runs/run_traits';

@@ -1,6 +1,6 @@
 // The page that scores trajectories of files, runs and logs: choice, plots over time, table.
 import type { Evaluation } from '../../protocol/score_types';
-import type { ErrorColumn } from '../../store/error_figures';
+import type { ErrorColumn } from '../../store/errors/error_figures';
 import type { ScoreRow } from '../../store/scoring/score_rows';
 import {
   exportScores,

@@ -13,8 +13,8 @@ import {
   scoreSpan,
   scoreSpecs,
 } from '../../store/scoring/score_specs';
-import type { Span } from '../../store/time_window';
-import { panned, zoomed } from '../../store/time_window';
+import type { Span } from '../../store/playback/time_window';
+import { panned, zoomed } from '../../store/playback/time_window';
 import { h, rebuild } from '../dom';
 import { DriftPlot } from '../plots/drift_plot';
 import type { PathAxes } from '../plots/path_plot';

@@ -1,0 +1,59 @@
+// The run's log, newest last.
+import { formatTime } from '../../store/format';
+import type { RunData } from '../../store/run_data';
+import type { Topic } from '../../store/state';
+import { h } from '../dom';
+import type { Panel } from '../panel';
+import { makePanel } from '../panel';
+import type { Context, View } from '../view';
+
+const kMostLines = 500;
+const kNear_px = 24;
+
+export class LogPanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly list = h('ol', { class: 'log' });
+  private data: RunData | null = null;
+  private generation = 0;
+  private shown = 0;
+  /** The newest line is kept in view. */
+  private atEnd = true;
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('log', 'Log');
+    this.panel.body.append(this.list);
+    this.root = this.panel.root;
+    this.list.addEventListener('scroll', () => {
+      const left_px = this.list.scrollHeight - this.list.scrollTop - this.list.clientHeight;
+      if (this.list.clientHeight > 0) this.atEnd = left_px < kNear_px;
+    });
+    // A hidden panel loses its place.
+    new ResizeObserver(() => this.scroll()).observe(this.list);
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (!changed.has('log') && !changed.has('run')) return;
+    const { data } = this.context.store.state;
+    if (data !== this.data || data.generation !== this.generation) {
+      this.data = data;
+      this.generation = data.generation;
+      this.shown = 0;
+      this.list.replaceChildren();
+    }
+    const first = Math.max(this.shown, data.log.length - kMostLines);
+    for (const { t_ns, level, text, source } of data.log.slice(first)) {
+      const time = h('time', {}, formatTime(t_ns));
+      const said = source === '' ? text : `${source}: ${text}`;
+      this.list.append(h('li', { 'data-level': level }, time, h('span', {}, said)));
+    }
+    this.shown = data.log.length;
+    while (this.list.children.length > kMostLines) this.list.firstElementChild?.remove();
+    this.scroll();
+    this.panel.showEmpty(data.log.length === 0 ? 'Nothing logged.' : null);
+  }
+
+  private scroll(): void {
+    if (this.atEnd) this.list.scrollTop = this.list.scrollHeight;
+  }
+}

@@ -1,0 +1,42 @@
+// Status of the estimators as a panel of its own.
+import type { Topic } from '../../store/state';
+import { failedEstimators } from '../../store/studies/study_form';
+import { h } from '../dom';
+import { EstimatorTable } from './estimator_table';
+import type { Panel } from '../panel';
+import { makePanel } from '../panel';
+import type { Context, View } from '../view';
+
+export class StatusPanel implements View {
+  readonly root: HTMLElement;
+  private readonly panel: Panel;
+  private readonly table = new EstimatorTable();
+  private readonly explain = h(
+    'button',
+    {
+      class: 'tab',
+      hidden: true,
+      'data-role': 'explain-status',
+      title: 'Find out why an estimator failed: fly it again with one cause changed at a time',
+      onclick: () => void this.context.studies.explain(this.context.store.state.run),
+    },
+    'Explain',
+  );
+
+  constructor(private readonly context: Context) {
+    this.panel = makePanel('status', 'Estimator status');
+    this.panel.body.append(this.table.root);
+    this.panel.tools.append(this.explain);
+    this.root = this.panel.root;
+  }
+
+  update(changed: ReadonlySet<Topic>): void {
+    if (!changed.has('run') && !changed.has('estimators') && !changed.has('log')) return;
+    const { state } = this.context.store;
+    const none = (state.run?.estimators.length ?? 0) === 0;
+    this.table.root.hidden = none;
+    this.panel.showEmpty(none ? 'The status of estimators appears here.' : null);
+    this.table.draw(state);
+    this.explain.hidden = state.run === null || failedEstimators(state.run).length === 0;
+  }
+}
