@@ -63,7 +63,10 @@ describe('flying again', { skip, timeout: 900_000 }, () => {
   });
 
   step('says that a flight is complete', async () => {
-    await callServer(stage.server, `/runs/${occupying}/cancel`, { method: 'POST' });
+    const cancelled = await callServer(stage.server, `/runs/${occupying}/cancel`, {
+      method: 'POST',
+    });
+    assert.equal(cancelled.status, 202);
     await dashboard.untilStatus(second, 'completed', kPatience_ms);
     await notice('The course over the built-in airfield: the flight is complete.').waitFor();
   });
