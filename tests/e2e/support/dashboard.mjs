@@ -16,7 +16,8 @@ export class Dashboard {
   }
 
   async open(url) {
-    await this.page.goto(url);
+    // A machine that makes a world for another test may need more than a minute.
+    await this.page.goto(url, { timeout: 4 * kPatience_ms });
     await this.until(
       () => document.querySelector('[data-role=connection]')?.dataset.status === 'open',
     );

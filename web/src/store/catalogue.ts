@@ -19,6 +19,7 @@ export class Catalogue {
   private polling = false;
   /** Ids of the runs that were over in the last list; the stream changes those of the state. */
   private over: ReadonlySet<string> = new Set();
+  private reading: Promise<void> = Promise.resolve();
 
   constructor(
     private readonly store: Store,
@@ -208,14 +209,22 @@ export class Catalogue {
     await this.readRuns();
   }
 
-  async readRuns(): Promise<void> {
+  /** One list after another: an older one never replaces a newer one. */
+  readRuns(): Promise<void> {
+    this.reading = this.reading.then(() => this.readNextRuns());
+    return this.reading;
+  }
+
+  private async readNextRuns(): Promise<void> {
     const { state } = this.store;
+    const before = [...(state.runs ?? [])];
     try {
-      const before = state.runs;
-      state.runs = await this.rest.runs();
-      this.announceEnded(before ?? [], state.runs);
+      const listed = await this.rest.runs();
+      const now = state.runs ?? [];
+      this.announceEnded(now, listed);
+      state.runs = withNewer(listed, before, now);
       state.listError = null;
-      for (const run of state.runs) this.takeListed(run);
+      for (const run of listed) this.takeListed(run);
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
       state.listError = errorText(error);
@@ -254,8 +263,28 @@ export class Catalogue {
     await this.readRuns();
     this.polling = false;
     if (this.store.state.connection.status === 'locked') return;
-    const active = this.store.state.runs?.some(isActive) === true;
+    const active =
+      this.store.state.runs?.some((run) => isActive(run) || !this.over.has(run.id)) === true;
     const failing = this.store.state.listError !== null;
     this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);
   }
+}
+
+/**
+ * A list of the server with what came while it was on its way: runs as the stream has told them, and
+ * runs that were started.
+ * @param before  the runs when the list was asked for
+ * @param now  the runs when it came
+ */
+function withNewer(listed: readonly Run[], before: readonly Run[], now: readonly Run[]): Run[] {
+  const asked = new Set(before);
+  const newer = new Map(now.filter((run) => !asked.has(run)).map((run) => [run.id, run]));
+  const known = new Set([...before, ...listed].map(({ id }) => id));
+  const started = now.filter(({ id }) => !known.has(id));
+  const told = listed.map((run) => {
+    const { results, tags, note } = run;
+    const streamed = newer.get(run.id);
+    return streamed === undefined ? run : { ...streamed, results, tags, note };
+  });
+  return [...started, ...told];
 }

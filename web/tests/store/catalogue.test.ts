@@ -245,6 +245,43 @@ describe('Catalogue', () => {
     expect(store.state.notices).toHaveLength(1);
   });
 
+  it('keeps what came while an older list was on its way', async () => {
+    const early = sampleRun({ id: 'a', status: 'running', frames: 0, frames_total: 0, flight: '' });
+    const flying = { ...early, frames: 7, frames_total: 40, flight: 'course' };
+    let meanwhile = () => {};
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /runs': () => {
+        meanwhile();
+        return [200, { runs: [{ ...early, note: 'windy' }] }];
+      },
+    });
+    store.state.runs = [early];
+    // As the stream and a launch do it.
+    meanwhile = () => {
+      store.state.runs = [sampleRun({ id: 'new', status: 'queued' }), flying];
+    };
+    await subject.readRuns();
+    expect(store.state.runs.map(({ id }) => id)).toEqual(['new', 'a']);
+    expect(store.state.runs[1]).toEqual({ ...flying, note: 'windy' });
+    meanwhile = () => {};
+    await subject.readRuns();
+    expect(store.state.runs).toEqual([{ ...early, note: 'windy' }]);
+  });
+
+  it('asks for a list after it has taken the one before', async () => {
+    const taken: number[] = [];
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /runs': () => {
+        taken.push(store.state.runs?.length ?? 0);
+        return [200, { runs: [sampleRun({ id: 'a' })] }];
+      },
+    });
+    await Promise.all([subject.readRuns(), subject.readRuns()]);
+    expect(taken).toEqual([0, 1]);
+  });
+
   it('reports a run that cannot be deleted', async () => {
     const { store, subject } = catalogue({
       'DELETE /runs/r1': () => [409, { error: { code: 'conflict', message: 'it still runs' } }],
