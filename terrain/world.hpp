@@ -1,6 +1,7 @@
 // Opens a world: a manifest that lists imagery and elevation files, or those files directly.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -22,6 +23,9 @@ struct ImageryLayer {
   std::optional<std::string> crs{};
   /// Texels whose colour bands all have this value are void, regardless of the file.
   std::optional<double> nodata{};
+  /// Values shown as 0 and 255, of samples that are not 8 bit; by default from samples of all files
+  /// of the same type.
+  std::optional<std::array<double, 2>> range{};
 };
 
 struct ElevationLayer {

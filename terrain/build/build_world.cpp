@@ -140,6 +140,7 @@ Result<CacheHeader> new_header(const WorldSpec& spec,
   if (!sources) return sources.error();
   header.sources = std::move(*sources);
   header.survey = tiles.elevation().survey_result();
+  if (const ElevationModel* far = tiles.elevation().far()) header.far_survey = far->survey_result();
   header.levels = tiles.grid().levels;
   return header;
 }

@@ -22,18 +22,18 @@ void add_tile_jobs(const TileGrid& grid, std::vector<Job>& jobs) {
     const int last_row = (grid.rows - 1) >> level;
     for (int row = chunk_of(-1); row <= chunk_of(last_row + 1); ++row) {
       for (int column = chunk_of(-1); column <= chunk_of(last_column + 1); ++column) {
-        jobs.push_back({false, level, column, row});
+        jobs.push_back({std::nullopt, level, column, row});
       }
     }
   }
 }
 
-void add_height_jobs(const PagedHeights& heights, std::vector<Job>& jobs) {
+void add_height_jobs(const PagedHeights& heights, HeightReach reach, std::vector<Job>& jobs) {
   constexpr int kPosts = kBlockPosts * kChunkBlocks;
   for (int level = 0; level < heights.levels(); ++level) {
     for (int row = 0; row * kPosts < heights.rows(level); ++row) {
       for (int column = 0; column * kPosts < heights.columns(level); ++column) {
-        jobs.push_back({true, level, column, row});
+        jobs.push_back({reach, level, column, row});
       }
     }
   }
@@ -46,12 +46,20 @@ CacheBuilder::CacheBuilder(const RasterWorld& world, fs::path folder)
       folder_(std::move(folder)),
       chunks_(static_cast<std::size_t>(world.grid().levels)) {
   add_tile_jobs(world.grid(), jobs_);
-  const PagedHeights* heights = world.elevation().heights();
-  if (heights != nullptr) add_height_jobs(*heights, jobs_);
+  for (const HeightReach reach : {HeightReach::kNear, HeightReach::kFar}) {
+    const PagedHeights* heights = heights_of(reach);
+    if (heights != nullptr) add_height_jobs(*heights, reach, jobs_);
+  }
+}
+
+const PagedHeights* CacheBuilder::heights_of(HeightReach reach) const {
+  if (reach == HeightReach::kNear) return world_.elevation().heights();
+  const ElevationModel* far = world_.elevation().far();
+  return far != nullptr ? far->heights() : nullptr;
 }
 
 fs::path CacheBuilder::path(const Job& job) const {
-  return job.heights ? height_chunk_path(folder_, job.level, job.column, job.row)
+  return job.heights ? height_chunk_path(folder_, *job.heights, job.level, job.column, job.row)
                      : tile_chunk_path(folder_, job.level, job.column, job.row);
 }
 
@@ -80,7 +88,7 @@ Result<std::vector<Bytes>> CacheBuilder::tiles(const Job& job, bool& any) const 
 }
 
 Result<std::vector<Bytes>> CacheBuilder::heights(const Job& job) const {
-  const PagedHeights& heights = *world_.elevation().heights();
+  const PagedHeights& heights = *heights_of(*job.heights);
   std::vector<Bytes> pieces(std::size_t{kChunkBlocks} * kChunkBlocks);
   for (int v = 0; v < kChunkBlocks; ++v) {
     for (int u = 0; u < kChunkBlocks; ++u) {
@@ -111,7 +119,7 @@ Status CacheBuilder::make_one(const Job& job) {
     note(job);
     return {};
   }
-  bool any = job.heights;
+  bool any = job.heights.has_value();
   auto pieces = job.heights ? heights(job) : tiles(job, any);
   if (!pieces) return pieces.error();
   if (stop_ || !any) return {};
@@ -132,7 +140,8 @@ Result<int> CacheBuilder::count_damaged(const std::vector<CacheHeader::Chunks>& 
   const Work look = [&](const Job& job) -> Status {
     const auto level = static_cast<std::size_t>(job.level);
     const bool wanted =
-        job.heights || (level < expected.size() && expected[level].contains({job.column, job.row}));
+        job.heights.has_value() ||
+        (level < expected.size() && expected[level].contains({job.column, job.row}));
     if (wanted && !check_chunk(path(job))) ++damaged;
     return {};
   };

@@ -18,7 +18,7 @@ class CacheBuilder {
  public:
   /// One chunk of tiles or of heights.
   struct Job {
-    bool heights = false;
+    std::optional<HeightReach> heights;  ///< empty for tiles
     int level = 0;
     int column = 0;
     int row = 0;
@@ -50,6 +50,8 @@ class CacheBuilder {
   Status make_one(const Job& job);
   Result<std::vector<Bytes>> tiles(const Job& job, bool& any) const;
   Result<std::vector<Bytes>> heights(const Job& job) const;
+  /// Null for flat ground, or if there is no coarser grid.
+  [[nodiscard]] const PagedHeights* heights_of(HeightReach reach) const;
   [[nodiscard]] bool may_have_texels(const TileId& id) const;
   [[nodiscard]] std::filesystem::path path(const Job& job) const;
   void note(const Job& job);

@@ -35,7 +35,9 @@ std::string cache_fields(const WorldSpec& spec) {
   Json json;
   json["version"] = kCacheVersion;
   for (const ImageryLayer& layer : spec.imagery) {
-    json["imagery"].push_back(layer_fields(spec, layer));
+    Json fields = layer_fields(spec, layer);
+    if (layer.range) fields["range"] = *layer.range;
+    json["imagery"].push_back(fields);
   }
   for (const ElevationLayer& layer : spec.elevation) {
     Json fields = layer_fields(spec, layer);

@@ -21,6 +21,41 @@ std::string chunk_name(int column, int row) {
   return "x" + std::to_string(column) + "y" + std::to_string(row) + ".chunk";
 }
 
+HeightSurvey survey_from(const Json& json) {
+  HeightSurvey survey{json.at("lowest_m").get<double>(),
+                      json.at("highest_m").get<double>(),
+                      json.at("posts").get<double>(),
+                      json.at("voids").get<double>(),
+                      json.at("implausible").get<double>(),
+                      json.at("implausible_layers").get<std::vector<bool>>(),
+                      json.at("steep").get<double>(),
+                      json.at("steepest_m").get<double>(),
+                      {}};
+  for (const Json& voids : json.at("undeclared")) {
+    survey.undeclared.push_back({voids.at("posts").get<double>(),
+                                 voids.at("of_posts").get<double>(),
+                                 voids.at("values").get<std::vector<float>>()});
+  }
+  return survey;
+}
+
+Json json_of(const HeightSurvey& survey) {
+  Json json = {{"lowest_m", survey.lowest_m},
+               {"highest_m", survey.highest_m},
+               {"posts", survey.posts},
+               {"voids", survey.voids},
+               {"implausible", survey.implausible},
+               {"implausible_layers", survey.implausible_layers},
+               {"steep", survey.steep},
+               {"steepest_m", survey.steepest_m},
+               {"undeclared", Json::array()}};
+  for (const UndeclaredVoids& voids : survey.undeclared) {
+    json["undeclared"].push_back(
+        {{"posts", voids.posts}, {"of_posts", voids.of_posts}, {"values", voids.values}});
+  }
+  return json;
+}
+
 CacheHeader header_from(const Json& json) {
   CacheHeader header;
   header.fields = json.at("fields").get<std::string>();
@@ -36,21 +71,8 @@ CacheHeader header_from(const Json& json) {
     for (const Json& chunk : level) chunks.insert({chunk.at(0).get<int>(), chunk.at(1).get<int>()});
   }
   header.levels = static_cast<int>(header.chunks.size());
-  const Json& survey = json.at("heights");
-  header.survey = {survey.at("lowest_m").get<double>(),
-                   survey.at("highest_m").get<double>(),
-                   survey.at("posts").get<double>(),
-                   survey.at("voids").get<double>(),
-                   survey.at("implausible").get<double>(),
-                   survey.at("implausible_layers").get<std::vector<bool>>(),
-                   survey.at("steep").get<double>(),
-                   survey.at("steepest_m").get<double>(),
-                   {}};
-  for (const Json& voids : survey.at("undeclared")) {
-    header.survey.undeclared.push_back({voids.at("posts").get<double>(),
-                                        voids.at("of_posts").get<double>(),
-                                        voids.at("values").get<std::vector<float>>()});
-  }
+  header.survey = survey_from(json.at("heights"));
+  if (json.contains("far_heights")) header.far_survey = survey_from(json.at("far_heights"));
   for (const Json& masked : json.at("masked")) header.masked.push_back(masked.get<bool>());
   header.bytes = json.at("bytes").get<std::uint64_t>();
   return header;
@@ -88,8 +110,10 @@ fs::path tile_chunk_path(const fs::path& folder, int level, int column, int row)
   return folder / "tiles" / std::to_string(level) / chunk_name(column, row);
 }
 
-fs::path height_chunk_path(const fs::path& folder, int level, int column, int row) {
-  return folder / "heights" / std::to_string(level) / chunk_name(column, row);
+fs::path height_chunk_path(
+    const fs::path& folder, HeightReach reach, int level, int column, int row) {
+  const char* const name = reach == HeightReach::kNear ? "heights" : "far_heights";
+  return folder / name / std::to_string(level) / chunk_name(column, row);
 }
 
 fs::path validity_path(const fs::path& folder, int layer) {
@@ -113,19 +137,8 @@ Status write_header(const fs::path& folder, const CacheHeader& header) {
     for (const auto& [column, row] : level) list.push_back({column, row});
     json["chunks"].push_back(std::move(list));
   }
-  json["heights"] = {{"lowest_m", header.survey.lowest_m},
-                     {"highest_m", header.survey.highest_m},
-                     {"posts", header.survey.posts},
-                     {"voids", header.survey.voids},
-                     {"implausible", header.survey.implausible},
-                     {"implausible_layers", header.survey.implausible_layers},
-                     {"steep", header.survey.steep},
-                     {"steepest_m", header.survey.steepest_m},
-                     {"undeclared", Json::array()}};
-  for (const UndeclaredVoids& voids : header.survey.undeclared) {
-    json["heights"]["undeclared"].push_back(
-        {{"posts", voids.posts}, {"of_posts", voids.of_posts}, {"values", voids.values}});
-  }
+  json["heights"] = json_of(header.survey);
+  if (header.far_survey) json["far_heights"] = json_of(*header.far_survey);
   json["masked"] = header.masked;
   json["bytes"] = header.bytes;
   json["check"] = check_of(json);
@@ -179,9 +192,14 @@ Result<Tile> WorldDiskCache::tile(const TileId& id) const {
   return std::move(*tile);
 }
 
-Result<HeightGrid> WorldDiskCache::block(int level, int column, int row) const {
+const HeightSurvey* WorldDiskCache::survey(HeightReach reach) const {
+  if (reach == HeightReach::kNear) return &header_.survey;
+  return header_.far_survey ? &*header_.far_survey : nullptr;
+}
+
+Result<HeightGrid> WorldDiskCache::block(HeightReach reach, int level, int column, int row) const {
   const fs::path file =
-      height_chunk_path(folder_, level, column / kChunkBlocks, row / kChunkBlocks);
+      height_chunk_path(folder_, reach, level, column / kChunkBlocks, row / kChunkBlocks);
   auto piece = read_piece(file, (row % kChunkBlocks) * kChunkBlocks + column % kChunkBlocks);
   if (!piece) return piece.error();
   auto grid = unpack_heights(*piece);

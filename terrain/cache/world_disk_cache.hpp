@@ -1,10 +1,12 @@
 // Inside terrain only: a world's precomputed tiles and heights, stored next to its manifest.
 //
-// CACHE/KEY/cache.json describes the sources and is written last; CACHE/KEY/tiles/LEVEL/ and
-// CACHE/KEY/heights/LEVEL/ hold chunks; CACHE/KEY/validity-N: where layer N has texels.
+// CACHE/KEY/cache.json describes the sources and is written last; CACHE/KEY/tiles/LEVEL/,
+// CACHE/KEY/heights/LEVEL/ and CACHE/KEY/far_heights/LEVEL/ hold chunks; CACHE/KEY/validity-N:
+// where layer N has texels.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -30,7 +32,8 @@ struct CacheHeader {
   /// For each level, the chunks that contain tiles.
   std::vector<Chunks> chunks;
   HeightSurvey survey;
-  std::vector<bool> masked;  ///< per imagery layer: has a validity file
+  std::optional<HeightSurvey> far_survey;  ///< of the coarser grid of heights, if there is one
+  std::vector<bool> masked;                ///< per imagery layer: has a validity file
   std::uint64_t bytes = 0;
 };
 
@@ -38,10 +41,8 @@ struct CacheHeader {
                                                     int level,
                                                     int column,
                                                     int row);
-[[nodiscard]] std::filesystem::path height_chunk_path(const std::filesystem::path& folder,
-                                                      int level,
-                                                      int column,
-                                                      int row);
+[[nodiscard]] std::filesystem::path height_chunk_path(
+    const std::filesystem::path& folder, HeightReach reach, int level, int column, int row);
 [[nodiscard]] std::filesystem::path validity_path(const std::filesystem::path& folder, int layer);
 
 /// Writes cache.json, which makes the folder valid. Errors: kIo.
@@ -63,8 +64,11 @@ class WorldDiskCache final : public HeightStore {
   /// A tile of a level that the cache contains. Errors: kIo naming the file.
   [[nodiscard]] Result<Tile> tile(const TileId& id) const;
   [[nodiscard]] bool holds(int level) const { return level >= 0 && level < header_.levels; }
-  [[nodiscard]] const HeightSurvey& survey() const override { return header_.survey; }
-  [[nodiscard]] Result<HeightGrid> block(int level, int column, int row) const override;
+  [[nodiscard]] const HeightSurvey* survey(HeightReach reach) const override;
+  [[nodiscard]] Result<HeightGrid> block(HeightReach reach,
+                                         int level,
+                                         int column,
+                                         int row) const override;
   /// Empty for a layer without mask. Errors: kIo, also if the mask is not of a raster of this size.
   [[nodiscard]] Result<std::optional<ValidityGrid>> validity(int layer,
                                                              int width_px,

@@ -31,7 +31,10 @@ double covered_share(const Rasters& rasters, const MapRect& imagery) {
       });
     }
   }
-  return static_cast<double>(covered) / (kSteps * kSteps);
+  if (covered > 0) return static_cast<double>(covered) / (kSteps * kSteps);
+  double share = 0.0;  // of a raster between the places
+  for (const RasterPtr& raster : rasters) share = std::max(share, raster->overlap_share(imagery));
+  return share;
 }
 
 /// The part of an area that is covered by posts of some raster, to a hundredth of the area.
@@ -79,6 +82,11 @@ PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m)
           if (!std::isnan(height)) break;
         }
         posts.grid.at(i, j) = static_cast<float>(height);
+        posts.outside += std::isnan(height) &&
+                         std::none_of(rasters.begin(), rasters.end(), [&](const RasterPtr& raster) {
+                           return raster->covers(area.x_min + (column + i) * spacing_m,
+                                                 area.y_max - (row + j) * spacing_m);
+                         });
       }
     }
     for (const RasterPtr& raster : rasters) {
@@ -86,6 +94,28 @@ PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m)
     }
     return posts;
   };
+}
+
+/// Moves an area's north-west corner inwards to a post of a raster that is parallel to the map and
+/// has square meshes, so that posts at the returned spacing [m] are those of the raster. Empty for
+/// other rasters.
+std::optional<double> align(const ElevationRaster& raster, MapRect& area) {
+  const SmoothMap<2>& post_from_map = raster.post_from_map();
+  const Eigen::Vector2d first = post_from_map(area.x_min, area.y_max);
+  const Eigen::Vector2d last = post_from_map(area.x_max, area.y_min);
+  const double spacing_m = (area.x_max - area.x_min) / (last.x() - first.x());
+  if (!(spacing_m > 0.0)) return std::nullopt;
+  for (const double x : {area.x_min, 0.5 * (area.x_min + area.x_max), area.x_max}) {
+    for (const double y : {area.y_min, 0.5 * (area.y_min + area.y_max), area.y_max}) {
+      const Eigen::Vector2d parallel =
+          first + Eigen::Vector2d(x - area.x_min, area.y_max - y) / spacing_m;
+      constexpr double kTolerancePosts = 1e-3;
+      if (!((post_from_map(x, y) - parallel).norm() < kTolerancePosts)) return std::nullopt;
+    }
+  }
+  area.x_min += (std::ceil(first.x()) - first.x()) * spacing_m;
+  area.y_max -= (std::ceil(first.y()) - first.y()) * spacing_m;
+  return spacing_m;
 }
 
 }  // namespace
@@ -104,16 +134,13 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
                                             double max_posts,
                                             std::vector<std::string>& warnings) {
   ElevationModel model;
-  model.parts_ = std::make_shared<Parts>();
-  Parts& parts = *model.parts_;
-  parts.cache = std::make_shared<BlockCache>(kCacheBytes);
-  for (const ElevationLayer& layer : layers) {
-    auto raster = ElevationRaster::open(layer, plane, area, parts.cache, warnings);
-    if (!raster) return raster.error();
-    parts.rasters.push_back(std::move(*raster));
+  model.area_ = area;
+  const std::vector<int> all_posts(layers.size(), 1);
+  if (Status opened = model.open_layers(layers, plane, area, all_posts, warnings); !opened) {
+    return opened.error();
   }
-  const RasterPtr& first = parts.rasters.front();
-  const double share = covered_share(parts.rasters, imagery);
+  const RasterPtr& first = model.parts_->rasters.front();
+  const double share = covered_share(model.parts_->rasters, imagery);
   if (share == 0.0) {
     return Error{ErrorCode::kInvalidArgument,
                  first->file() +
@@ -124,11 +151,35 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
     warnings.push_back(first->file() + ": elevation covers " + percent_text(share) +
                        " of the imagery; beyond, the ground continues with the edge's height");
   }
-  if (parts.rasters.size() > 1) {
-    const Status merged = model.merge(covered_part(parts.rasters, area), max_posts, warnings);
-    if (!merged) return merged.error();
-    return model;
+  if (Status laid = model.lay_grid(area, 0.0, max_posts, warnings); !laid) return laid.error();
+  return model;
+}
+
+Status ElevationModel::open_layers(const std::vector<ElevationLayer>& layers,
+                                   const MapPlane& plane,
+                                   const MapRect& area,
+                                   const std::vector<int>& steps,
+                                   std::vector<std::string>& warnings) {
+  parts_ = std::make_shared<Parts>();
+  parts_->cache = std::make_shared<BlockCache>(kCacheBytes);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    auto raster = ElevationRaster::open(layers[i], plane, area, parts_->cache, steps[i], warnings);
+    if (!raster) return raster.error();
+    parts_->rasters.push_back(std::move(*raster));
   }
+  return {};
+}
+
+/// Lays the grid of posts: that of the only layer, or one onto which all are merged.
+Status ElevationModel::lay_grid(const MapRect& area,
+                                double least_spacing_m,
+                                double max_posts,
+                                std::vector<std::string>& warnings) {
+  Parts& parts = *parts_;
+  if (parts.rasters.size() > 1) {
+    return merge(covered_part(parts.rasters, area), least_spacing_m, max_posts, warnings);
+  }
+  const RasterPtr& first = parts.rasters.front();
   const double posts = static_cast<double>(first->columns()) * first->rows();
   if (posts > max_posts) {
     return Error{ErrorCode::kUnsupported,
@@ -136,9 +187,9 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
                      std::to_string(first->rows()) + " posts around the imagery, limit " +
                      std::to_string(static_cast<long long>(max_posts))};
   }
-  model.what_ = first->file();
-  model.post_from_map_ = first->post_from_map();
-  model.spacing_m_ = first->spacing_m();
+  what_ = first->file();
+  post_from_map_ = first->post_from_map();
+  spacing_m_ = first->spacing_m();
   parts.pyramid =
       std::make_unique<HeightPyramid>(first->columns(),
                                       first->rows(),
@@ -147,17 +198,21 @@ Result<ElevationModel> ElevationModel::open(const std::vector<ElevationLayer>& l
                                         return first->read(column, row, columns, rows);
                                       });
   parts.heights = &parts.pyramid->filled();
-  return model;
+  return {};
 }
 
 /// Resamples the rasters to one grid parallel to the map's axes.
-Status ElevationModel::merge(const MapRect& area,
+Status ElevationModel::merge(const MapRect& covered,
+                             double least_spacing_m,
                              double max_posts,
                              std::vector<std::string>& warnings) {
-  spacing_m_ = std::numeric_limits<double>::max();
-  for (const RasterPtr& raster : parts_->rasters) {
-    spacing_m_ = std::min(spacing_m_, raster->spacing_m());
-  }
+  const RasterPtr& finest = *std::min_element(
+      parts_->rasters.begin(), parts_->rasters.end(), [](const RasterPtr& a, const RasterPtr& b) {
+        return a->spacing_m() < b->spacing_m();
+      });
+  MapRect area = covered;
+  spacing_m_ = align(*finest, area).value_or(finest->spacing_m());
+  spacing_m_ = std::max(spacing_m_, least_spacing_m);
   const double area_m2 = (area.x_max - area.x_min) * (area.y_max - area.y_min);
   if (area_m2 / (spacing_m_ * spacing_m_) > max_posts) {
     return Error{ErrorCode::kUnsupported, "merged elevation: too many posts around the imagery"};
@@ -188,18 +243,19 @@ Status ElevationModel::merge(const MapRect& area,
 }
 
 Status ElevationModel::use(std::shared_ptr<const HeightStore> store,
+                           HeightReach reach,
                            std::vector<std::string>& warnings) {
   const PagedHeights& shape = parts_->pyramid->filled();
   parts_->store = std::move(store);
-  parts_->stored =
-      std::make_unique<PagedHeights>(shape.columns(0),
-                                     shape.rows(0),
-                                     parts_->cache,
-                                     [kept = parts_->store.get()](int level, int column, int row) {
-                                       return kept->block(level, column, row);
-                                     });
+  parts_->stored = std::make_unique<PagedHeights>(
+      shape.columns(0),
+      shape.rows(0),
+      parts_->cache,
+      [kept = parts_->store.get(), reach](int level, int column, int row) {
+        return kept->block(reach, level, column, row);
+      });
   parts_->heights = parts_->stored.get();
-  return take(parts_->store->survey(), warnings);
+  return take(*parts_->store->survey(reach), warnings);
 }
 
 double ElevationModel::at_level(int level, double x_map_m, double y_map_m) const {
@@ -219,20 +275,25 @@ double ElevationModel::at_level(int level, double x_map_m, double y_map_m) const
 }
 
 double ElevationModel::height_m(double x_map_m, double y_map_m) const {
-  return parts_ ? at_level(0, x_map_m, y_map_m) : flat_height_m_;
+  return coarse_height_m(x_map_m, y_map_m, 0.0);
 }
 
 double ElevationModel::coarse_height_m(double x_map_m, double y_map_m, double spacing_m) const {
   if (!parts_) return flat_height_m_;
+  const double share = near_share(x_map_m, y_map_m);
+  if (share == 0.0) return far_->coarse_height_m(x_map_m, y_map_m, spacing_m);
   int level = 0;
   while (level + 1 < parts_->heights->levels() && spacing_m_ * (2 << level) <= spacing_m) ++level;
-  return at_level(level, x_map_m, y_map_m);
+  const double near_m = at_level(level, x_map_m, y_map_m);
+  if (share == 1.0) return near_m;
+  const double far_m = far_->coarse_height_m(x_map_m, y_map_m, spacing_m);
+  return far_m + share * (near_m - far_m);
 }
 
 Status ElevationModel::status() const {
   if (!parts_) return {};
   if (auto error = parts_->heights->read_error()) return *error;
-  return {};
+  return far_ ? far_->status() : Status{};
 }
 
 std::vector<std::string> ElevationModel::relations() const {
@@ -269,6 +330,7 @@ std::string ElevationModel::fingerprint() const {
   for (const RasterPtr& raster : parts_->rasters) {
     result += "; posts " + raster->post_from_map().fingerprint() + ", " + raster->relation();
   }
+  if (far_) result += "; beyond " + far_->fingerprint();
   return result;
 }
 

@@ -38,6 +38,17 @@ PlaneFunction posts_of(const MapPlane& plane,
   };
 }
 
+/// The transform of a raster that consists of every step-th pixel of a row and of a column. GDAL
+/// takes pixels step / 2 (rounded down), step + step / 2 ..., so that for an even step their
+/// centres lie half a pixel beyond the middle of `step` pixels.
+GeoTransform thinned(const GeoTransform& all, int step) {
+  GeoTransform some = all;
+  const double shift = step % 2 == 0 ? 0.5 : 0.0;
+  all.crs_from_pixel(shift, shift, some.g[0], some.g[3]);
+  for (const int i : {1, 2, 4, 5}) some.g[i] *= step;
+  return some;
+}
+
 /// Number of the file's columns around the earth; empty if it has fewer.
 std::optional<int> columns_around(const std::optional<Turn>& turn,
                                   const GeoTransform& transform,
@@ -100,6 +111,7 @@ Result<std::shared_ptr<ElevationRaster>> ElevationRaster::open(const ElevationLa
                                                                const MapPlane& plane,
                                                                const MapRect& area,
                                                                std::shared_ptr<BlockCache> cache,
+                                                               int step,
                                                                std::vector<std::string>& warnings) {
   auto raster = std::make_shared<ElevationRaster>();
   raster->file_ = layer.file.string();
@@ -108,11 +120,13 @@ Result<std::shared_ptr<ElevationRaster>> ElevationRaster::open(const ElevationLa
   auto opened = open_raster(layer.file);
   if (!opened) return opened.error();
   GDALDataset& dataset = **opened;
-  raster->file_columns_ = dataset.GetRasterXSize();
-  raster->file_rows_ = dataset.GetRasterYSize();
+  raster->step_ = std::clamp(step, 1, std::min(dataset.GetRasterXSize(), dataset.GetRasterYSize()));
+  raster->file_columns_ = dataset.GetRasterXSize() / raster->step_;
+  raster->file_rows_ = dataset.GetRasterYSize() / raster->step_;
   auto place = read_georeference(
       dataset, layer.file, layer.crs, messages.empty() ? std::string() : messages.text());
   if (!place) return place.error();
+  if (raster->step_ > 1) place->transform = thinned(place->transform, raster->step_);
   Status good = check_height_band(dataset, raster->file_, warnings);
   if (good) good = raster->find_window(plane, area, *place);
   if (good) good = raster->find_conversion(dataset, layer, *place, warnings);
@@ -181,6 +195,23 @@ void ElevationRaster::set_window(const Eigen::Vector2d& low, const Eigen::Vector
   }
 }
 
+std::pair<Eigen::Vector2d, Eigen::Vector2d> ElevationRaster::post_bounds(
+    const MapRect& area) const {
+  Eigen::Vector2d low(1e18, 1e18);
+  Eigen::Vector2d high(-1e18, -1e18);
+  constexpr int kSteps = 32;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const Eigen::Vector2d post =
+          (*post_from_map_)(area.x_min + (area.x_max - area.x_min) * i / kSteps,
+                            area.y_min + (area.y_max - area.y_min) * j / kSteps);
+      low = low.cwiseMin(post);
+      high = high.cwiseMax(post);
+    }
+  }
+  return {low, high};
+}
+
 Status ElevationRaster::find_window(const MapPlane& plane,
                                     const MapRect& area,
                                     const Georeference& place) {
@@ -199,18 +230,7 @@ Status ElevationRaster::find_window(const MapPlane& plane,
                      ": its coordinate reference system has no smooth relation to the map plane "
                      "around the imagery"};
   }
-  Eigen::Vector2d low(1e18, 1e18);
-  Eigen::Vector2d high(-1e18, -1e18);
-  constexpr int kSteps = 32;
-  for (int j = 0; j <= kSteps; ++j) {
-    for (int i = 0; i <= kSteps; ++i) {
-      const Eigen::Vector2d post =
-          (*post_from_map_)(area.x_min + (area.x_max - area.x_min) * i / kSteps,
-                            area.y_min + (area.y_max - area.y_min) * j / kSteps);
-      low = low.cwiseMin(post);
-      high = high.cwiseMax(post);
-    }
-  }
+  const auto [low, high] = post_bounds(area);
   whereabouts_ = places_of(plane, area, place);
   set_window(low, high);
   if (window_.columns < 1 || window_.rows < 1) {
@@ -284,10 +304,24 @@ bool ElevationRaster::covers(double x_map_m, double y_map_m) const {
          post.y() <= window_.rows - 0.5;
 }
 
+double ElevationRaster::overlap_share(const MapRect& area) const {
+  const auto [low, high] = post_bounds(area);
+  const double columns = std::min(high.x(), window_.columns - 0.5) - std::max(low.x(), -0.5);
+  const double rows = std::min(high.y(), window_.rows - 0.5) - std::max(low.y(), -0.5);
+  if (columns <= 0.0 || rows <= 0.0) return 0.0;
+  return columns * rows / (high - low).prod();
+}
+
 double ElevationRaster::height_m(double x_map_m, double y_map_m) const {
   if (!covers(x_map_m, y_map_m)) return std::numeric_limits<double>::quiet_NaN();
+  // A place that is a post but for rounding gets its height, whatever its neighbours are.
+  const auto whole_if_close = [](double value) {
+    constexpr double kClosePosts = 1e-5;
+    const double whole = std::round(value);
+    return std::abs(value - whole) < kClosePosts ? whole : value;
+  };
   const Eigen::Vector2d post = (*post_from_map_)(x_map_m, y_map_m);
-  return posts_->bilinear(0, post.x(), post.y());
+  return posts_->bilinear(0, whole_if_close(post.x()), whole_if_close(post.y()));
 }
 
 }  // namespace overfly::terrain

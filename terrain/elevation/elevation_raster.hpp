@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "terrain/cancelled.hpp"
@@ -28,11 +29,13 @@ class ElevationRaster {
   /// are converted to metres above the ellipsoid. Doubts about unit and datum are added to
   /// `warnings`.
   /// @param cache  holds the posts that `height_m` read
+  /// @param step  only every step-th post of a row and of a column is used
   /// Errors: kNotFound, kUnreadable, kInvalidArgument naming the file.
   static Result<std::shared_ptr<ElevationRaster>> open(const ElevationLayer& layer,
                                                        const MapPlane& plane,
                                                        const MapRect& area,
                                                        std::shared_ptr<BlockCache> cache,
+                                                       int step,
                                                        std::vector<std::string>& warnings);
 
   /// Checks for signs of a damaged file. Errors: kUnreadable, kNotFound naming it.
@@ -50,6 +53,9 @@ class ElevationRaster {
 
   /// True within half a post of the window's posts.
   [[nodiscard]] bool covers(double x_map_m, double y_map_m) const;
+  /// Fraction of an area of the map within half a post of the window's posts: exact if the raster
+  /// is parallel to the map, else of the area's bounding box in posts.
+  [[nodiscard]] double overlap_share(const MapRect& area) const;
   /// NaN outside, where there is no data, and where the file cannot be read (see `read_error`).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
   [[nodiscard]] std::optional<Error> read_error() const { return posts_->read_error(); }
@@ -88,6 +94,8 @@ class ElevationRaster {
   [[nodiscard]] Result<HeightGrid> read_numbers(int column, int row, int columns, int rows) const;
   [[nodiscard]] double metres_of(float number) const;
   void to_metres(RawPosts& posts, int column, int row) const;
+  /// Smallest and largest post (column, row) over an area of the map.
+  [[nodiscard]] std::pair<Eigen::Vector2d, Eigen::Vector2d> post_bounds(const MapRect& area) const;
   void set_window(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
   void page_posts(std::shared_ptr<BlockCache> cache);
   [[nodiscard]] Result<HeightGrid> posts_block(int column, int row) const;
@@ -99,7 +107,8 @@ class ElevationRaster {
   std::string file_;
   std::string whereabouts_;
   std::unique_ptr<DatasetPool> pool_;
-  int file_columns_ = 0;
+  int step_ = 1;          ///< pixels of the file between two used posts
+  int file_columns_ = 0;  ///< used posts of a row
   int file_rows_ = 0;
   std::optional<int> columns_around_;  ///< around the earth, if the file covers a full turn
   Window window_;

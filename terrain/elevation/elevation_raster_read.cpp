@@ -29,10 +29,10 @@ Result<HeightGrid> ElevationRaster::read_numbers(int column, int row, int column
         count = std::min(count, *columns_around_ - first);
       }
       outcome = from->RasterIO(GF_Read,
-                               first,
-                               window_.row + row,
-                               count,
-                               rows,
+                               first * step_,
+                               (window_.row + row) * step_,
+                               count * step_,
+                               rows * step_,
                                data + done,
                                count,
                                rows,

@@ -44,8 +44,8 @@ std::string steep_text(const HeightSurvey& survey, double step_m) {
 
 }  // namespace
 
-Status ElevationModel::survey(const std::function<bool()>& cancelled,
-                              std::vector<std::string>& warnings) {
+Status ElevationModel::survey_posts(const std::function<bool()>& cancelled,
+                                    std::vector<std::string>& warnings) {
   for (const auto& raster : parts_->rasters) {
     Status whole = raster->check(cancelled, warnings);
     if (!whole) return whole;

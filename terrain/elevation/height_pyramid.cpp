@@ -76,7 +76,6 @@ void HeightPyramid::keep(int level, int column, int row, HeightGrid block) {
 Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelled, double steep_m) {
   HeightSurvey survey;
   SteepSteps steps(columns_, steep_m);
-  survey.posts = static_cast<double>(columns_) * rows_;
   survey.lowest_m = std::numeric_limits<double>::max();
   survey.highest_m = std::numeric_limits<double>::lowest();
   for (int row = 0; row < blocks(rows_); ++row) {
@@ -88,6 +87,8 @@ Result<HeightSurvey> HeightPyramid::survey(const std::function<bool()>& cancelle
       auto read = reader_(column * kBlockPosts, row * kBlockPosts, shape.columns, shape.rows);
       if (!read) return read.error();
       survey.implausible += static_cast<double>(read->implausible);
+      survey.posts += static_cast<double>(read->grid.heights_m.size() - read->outside);
+      survey.voids -= static_cast<double>(read->outside);
       for (const float height : read->grid.heights_m) {
         if (std::isnan(height)) {
           ++survey.voids;

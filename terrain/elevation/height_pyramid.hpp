@@ -22,6 +22,7 @@ namespace overfly::terrain {
 struct RawPosts {
   HeightGrid grid;
   std::size_t implausible = 0;  ///< implausible values, replaced by NaN
+  std::size_t outside = 0;      ///< posts of the grid that no file reaches
 };
 
 /// Undeclared no-data values found in one layer.
@@ -38,7 +39,7 @@ using PostReader = std::function<Result<RawPosts>(int column, int row, int colum
 struct HeightSurvey {
   double lowest_m = 0.0;
   double highest_m = 0.0;
-  double posts = 0;
+  double posts = 0;  ///< without those that no file reaches
   double voids = 0;
   double implausible = 0;
   std::vector<bool> implausible_layers;  ///< for several layers: those with such values

@@ -72,8 +72,9 @@ Status check_raster_size(GDALDataset& dataset, const std::filesystem::path& file
 
 }  // namespace
 
-Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
-    const ImageryLayer& layer, const Cancelled& cancelled, std::vector<std::string>& warnings) {
+Result<std::shared_ptr<ImageryRaster>> ImageryRaster::open(const ImageryLayer& layer,
+                                                           const Cancelled& cancelled,
+                                                           std::vector<std::string>& warnings) {
   const std::filesystem::path& file = layer.file;
   auto raster = std::make_shared<ImageryRaster>();
   raster->file_ = file;
@@ -99,7 +100,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   if (auto doubt = place_doubt(*place, raster->width_px_, raster->height_px_, file.string())) {
     warnings.push_back(std::move(*doubt));
   }
-  auto bands = find_bands(dataset, file.string(), layer.nodata, cancelled, warnings);
+  auto bands = find_bands(dataset, file.string(), layer.nodata, layer.range, cancelled);
   if (!bands) return bands.error();
   raster->bands_ = *bands;
   if (!messages.empty()) warnings.push_back(heard_while_opening(file, messages));
@@ -108,7 +109,7 @@ Result<std::shared_ptr<const ImageryRaster>> ImageryRaster::open(
   base.height_px = raster->height_px_;
   base.pool = std::make_unique<DatasetPool>(file, 0, std::move(*opened));
   raster->pyramid_->stored.push_back(std::move(base));
-  return std::shared_ptr<const ImageryRaster>(std::move(raster));
+  return raster;
 }
 
 Status ImageryRaster::prepare(const Cancelled& cancelled) const {

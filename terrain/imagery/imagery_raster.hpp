@@ -22,9 +22,15 @@ class ImageryRaster {
  public:
   /// Opens the file and checks its bands and georeference.
   /// Errors: kNotFound, kUnreadable, kInvalidArgument, kCancelled naming the file.
-  static Result<std::shared_ptr<const ImageryRaster>> open(const ImageryLayer& layer,
-                                                           const Cancelled& cancelled,
-                                                           std::vector<std::string>& warnings);
+  static Result<std::shared_ptr<ImageryRaster>> open(const ImageryLayer& layer,
+                                                     const Cancelled& cancelled,
+                                                     std::vector<std::string>& warnings);
+
+  /// Values shown as 0 and 255, for bands that are not 8 bit; call before reading.
+  void set_range(double low, double high) {
+    bands_.low = low;
+    bands_.high = high;
+  }
 
   /// One-time preparation for reading: checks that the file's blocks lie inside it, and which of
   /// its overviews are area averages (others are not used). `read` calls it if needed. After a
@@ -46,6 +52,7 @@ class ImageryRaster {
   [[nodiscard]] const Georeference& georeference() const { return georeference_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] bool has_mask() const { return bands_.has_mask; }
+  [[nodiscard]] const RasterBands& bands() const { return bands_; }
   [[nodiscard]] const std::string& format() const { return format_; }
 
  private:

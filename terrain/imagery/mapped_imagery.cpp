@@ -96,8 +96,12 @@ Status MappedImagery::find_validity(std::optional<ValidityGrid> known, const Can
 }
 
 std::string MappedImagery::fingerprint() const {
-  if (!pixel_from_map_) return "texels of the grid";
-  return "texels " + pixel_from_map_->fingerprint();
+  std::string text =
+      pixel_from_map_ ? "texels " + pixel_from_map_->fingerprint() : "texels of the grid";
+  if (const RasterBands& bands = raster_->bands(); bands.rescaled) {
+    text += ", values " + std::to_string(bands.low) + " to " + std::to_string(bands.high);
+  }
+  return text;
 }
 
 Eigen::Vector2d MappedImagery::pixel_from_map(double x_map_m, double y_map_m) const {

@@ -49,6 +49,18 @@ Status check_range(const Georeference& place, int width, int height, const std::
   return {};
 }
 
+Error no_place(GDALDataset& dataset, const std::string& file, const std::string& heard) {
+  const int points = dataset.GetGCPCount();
+  if (points > 0) {
+    return {ErrorCode::kInvalidArgument,
+            file + ": has no georeference, only " + std::to_string(points) +
+                " ground control points" + heard +
+                "; rectify it first, for example with `gdalwarp IN.tif OUT.tif`"};
+  }
+  return {ErrorCode::kInvalidArgument,
+          file + ": has no georeference (no position and pixel size)" + heard};
+}
+
 }  // namespace
 
 Result<Georeference> read_georeference(GDALDataset& dataset,
@@ -58,8 +70,7 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
   const std::string heard = said.empty() ? "" : " (GDAL reported: " + said + ")";
   Georeference place;
   if (dataset.GetGeoTransform(place.transform.g) != CE_None) {
-    return Error{ErrorCode::kInvalidArgument,
-                 file.string() + ": has no georeference (no position and pixel size)" + heard};
+    return no_place(dataset, file.string(), heard);
   }
   const double* g = place.transform.g;
   if (const double area = g[1] * g[5] - g[2] * g[4]; !std::isfinite(area) || area == 0.0) {
@@ -68,7 +79,9 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
                      std::to_string(g[1]) + ", " + std::to_string(g[5]) + ")"};
   }
   const OGRSpatialReference* crs = dataset.GetSpatialRef();
-  if (crs != nullptr && !crs->IsEmpty()) {
+  // A local system (of a building site, a game) has no known place on the earth.
+  const bool local = crs != nullptr && crs->IsLocal() != 0;
+  if (crs != nullptr && !crs->IsEmpty() && !local) {
     place.crs = *crs;
   } else if (crs_override) {
     if (Status status = check_crs_text(*crs_override, file.string() + ": crs"); !status) {
@@ -84,14 +97,18 @@ Result<Georeference> read_georeference(GDALDataset& dataset,
     }
   } else {
     return Error{ErrorCode::kInvalidArgument,
-                 file.string() + ": has no coordinate reference system" + heard +
-                     "; set it in the manifest's field \"crs\", for example \"EPSG:4326\""};
+                 file.string() +
+                     (local ? ": coordinate reference system is a local one without a place on the "
+                              "earth"
+                            : ": has no coordinate reference system") +
+                     heard + "; set it in the manifest's field \"crs\", for example \"EPSG:4326\""};
   }
   if (place.crs.IsProjected() == 0 && place.crs.IsGeographic() == 0) {
     return Error{ErrorCode::kInvalidArgument,
                  file.string() +
                      ": coordinate reference system is neither projected nor "
-                     "geographic, so its place on the earth is unknown"};
+                     "geographic, so its place on the earth is unknown; convert it, for example "
+                     "with `gdalwarp -t_srs EPSG:4326 IN.tif OUT.tif`"};
   }
   place.crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const Status in_range =

@@ -31,7 +31,7 @@ struct Georeference {
 };
 
 /// Reads the georeference; `crs_override` ("EPSG:2994", see check_crs_text) is used if the file has
-/// none.
+/// none, or a local one without a place on the earth.
 /// @param said  GDAL's messages from opening the file
 /// Errors: kInvalidArgument naming the file: no CRS, no or degenerate transform, a place outside
 /// the CRS's range.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "terrain/raster/unwritten_blocks.hpp"
 
@@ -27,11 +29,13 @@ int CPL_STDCALL ask(double, const char*, void* cancelled) {
   return asked && asked() ? FALSE : TRUE;
 }
 
-/// Chooses the range of bands that are not 8 bit: 0.5 % to 99.5 % of a sample.
-Status find_range(GDALDataset& dataset,
+/// Adds a sample of one band's values, without those that mark voids.
+Status add_sample(GDALDataset& dataset,
+                  int band_number,
                   const std::string& file,
+                  const std::optional<double>& void_value,
                   const Cancelled& cancelled,
-                  RasterBands& bands) {
+                  std::vector<float>& all) {
   constexpr int kSample = 256;
   const int width = std::min(kSample, dataset.GetRasterXSize());
   const int height = std::min(kSample, dataset.GetRasterYSize());
@@ -41,7 +45,7 @@ Status find_range(GDALDataset& dataset,
   INIT_RASTERIO_EXTRA_ARG(questions);
   questions.pfnProgress = &ask;
   questions.pProgressData = const_cast<Cancelled*>(&cancelled);
-  GDALRasterBand* band = dataset.GetRasterBand(bands.rgb[1]);
+  GDALRasterBand* band = dataset.GetRasterBand(band_number);
   if (band->RasterIO(GF_Read,
                      0,
                      0,
@@ -59,16 +63,33 @@ Status find_range(GDALDataset& dataset,
   }
   int has_nodata = 0;
   auto nodata = static_cast<float>(band->GetNoDataValue(&has_nodata));
-  if (bands.nodata) {
+  if (void_value) {
     has_nodata = 1;
-    nodata = static_cast<float>(*bands.nodata);
+    nodata = static_cast<float>(*void_value);
   }
-  std::erase_if(sample, [&](float v) { return !std::isfinite(v) || (has_nodata && v == nodata); });
+  std::copy_if(sample.begin(), sample.end(), std::back_inserter(all), [&](float v) {
+    return std::isfinite(v) && (has_nodata == 0 || v != nodata);
+  });
+  return {};
+}
+
+/// Chooses one range for all bands, so that colours keep their hue: 0.5 % to 99.5 % of a sample.
+Status find_range(GDALDataset& dataset,
+                  const std::string& file,
+                  const Cancelled& cancelled,
+                  RasterBands& bands) {
+  std::vector<float> sample;
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
+    Status added = add_sample(dataset, bands.rgb[c], file, bands.nodata, cancelled, sample);
+    if (!added) return added;
+  }
+  bands.low = std::numeric_limits<double>::infinity();
+  bands.high = -bands.low;
   if (sample.empty()) return {};
   std::sort(sample.begin(), sample.end());
   bands.low = sample[static_cast<std::size_t>(0.005 * static_cast<double>(sample.size() - 1))];
   bands.high = sample[static_cast<std::size_t>(0.995 * static_cast<double>(sample.size() - 1))];
-  if (bands.high <= bands.low) bands.high = bands.low + 1.0;
   return {};
 }
 
@@ -253,8 +274,8 @@ void paint_voids(Patch& patch) {
 Result<RasterBands> find_bands(GDALDataset& dataset,
                                const std::string& file,
                                const std::optional<double>& nodata,
-                               const Cancelled& cancelled,
-                               std::vector<std::string>& warnings) {
+                               const std::optional<std::array<double, 2>>& range,
+                               const Cancelled& cancelled) {
   RasterBands bands;
   bands.nodata = nodata;
   const int count = dataset.GetRasterCount();
@@ -266,17 +287,21 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
     bands.rgb = {1, 2, 3};
   }
   if (bands.rgb[0] == bands.rgb[1]) read_palette(dataset, bands);
-  const GDALDataType type = dataset.GetRasterBand(bands.rgb[0])->GetRasterDataType();
-  if (GDALDataTypeIsComplex(type) != 0) {
+  bands.type = dataset.GetRasterBand(bands.rgb[0])->GetRasterDataType();
+  if (GDALDataTypeIsComplex(bands.type) != 0) {
     return Error{ErrorCode::kUnreadable, file + ": has complex samples, not an image"};
   }
-  if (type != GDT_Byte) {
-    bands.rescaled = true;
-    const Status range = find_range(dataset, file, cancelled, bands);
-    if (!range) return range.error();
-    warnings.push_back(file + ": samples are " + GDALGetDataTypeName(type) + "; values " +
-                       std::to_string(bands.low) + " to " + std::to_string(bands.high) +
-                       " are shown as 0 to 255");
+  bands.rescaled = bands.type != GDT_Byte;
+  if (range && !bands.rescaled) {
+    return Error{ErrorCode::kInvalidArgument,
+                 file + ": samples are 8 bit, which \"range\" does not apply to"};
+  }
+  if (range) {
+    bands.low = (*range)[0];
+    bands.high = (*range)[1];
+  } else if (bands.rescaled) {
+    const Status found = find_range(dataset, file, cancelled, bands);
+    if (!found) return found.error();
   }
   for (int c = 0; c < 3 && !bands.unwritten; ++c) {
     if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;

@@ -85,7 +85,15 @@ std::string elevation_lines(const World& world, const RasterWorld& source) {
                  of_file ? (" (the file's: " + datums[i].named + ")").c_str() : "",
                  relations[i].c_str());
   }
-  return text + line("elevation posts: every %.2f m", source.elevation().spacing_m());
+  const ElevationModel& model = source.elevation();
+  if (model.far() == nullptr) {
+    return text + line("elevation posts: every %.2f m", model.spacing_m());
+  }
+  return text +
+         line("elevation posts: every %.2f m to %.0f m around the imagery, every %.2f m beyond",
+              model.spacing_m(),
+              model.near_reach_m(),
+              model.far()->spacing_m());
 }
 
 /// The range of latitude and longitude of the imagery; across the antimeridian the western

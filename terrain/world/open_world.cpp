@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "core/motion/pose.hpp"
@@ -17,20 +18,50 @@ namespace overfly::terrain {
 namespace {
 
 using Rasters = std::vector<std::shared_ptr<const ImageryRaster>>;
+
+/// Files of one sample type get one range of values, so that a mosaic has no steps at its seams.
+void share_ranges(const std::vector<ImageryLayer>& layers,
+                  const std::vector<std::shared_ptr<ImageryRaster>>& rasters,
+                  std::vector<std::string>& warnings) {
+  const auto chosen = [&](std::size_t i) {
+    return rasters[i]->bands().rescaled && !layers[i].range;
+  };
+  std::map<GDALDataType, std::pair<double, double>> ranges;
+  for (std::size_t i = 0; i < rasters.size(); ++i) {
+    if (!chosen(i)) continue;
+    const RasterBands& bands = rasters[i]->bands();
+    const auto [range, added] = ranges.try_emplace(bands.type, bands.low, bands.high);
+    range->second.first = std::min(range->second.first, bands.low);
+    range->second.second = std::max(range->second.second, bands.high);
+  }
+  for (std::size_t i = 0; i < rasters.size(); ++i) {
+    if (!chosen(i)) continue;
+    auto [low, high] = ranges.at(rasters[i]->bands().type);
+    if (low > high) low = high = 0.0;  // every file is void
+    if (low == high) high = low + 1.0;
+    rasters[i]->set_range(low, high);
+    warnings.push_back(rasters[i]->file().string() + ": samples are " +
+                       GDALGetDataTypeName(rasters[i]->bands().type) + "; values " +
+                       std::to_string(low) + " to " + std::to_string(high) +
+                       " are shown as 0 to 255; set \"range\" in the manifest to choose others");
+  }
+}
+
 Result<Rasters> open_imagery(const WorldSpec& spec,
                              const Cancelled& cancelled,
                              std::vector<std::string>& warnings) {
   if (spec.imagery.empty()) {
     return Error{ErrorCode::kInvalidArgument, "imagery: is empty; a world needs at least one file"};
   }
-  Rasters rasters;
+  std::vector<std::shared_ptr<ImageryRaster>> rasters;
   for (const ImageryLayer& layer : spec.imagery) {
     if (Status status = go_on(cancelled, layer.file); !status) return status.error();
     auto raster = ImageryRaster::open(layer, cancelled, warnings);
     if (!raster) return raster.error();
     rasters.push_back(std::move(*raster));
   }
-  return rasters;
+  share_ranges(spec.imagery, rasters, warnings);
+  return Rasters(rasters.begin(), rasters.end());
 }
 
 /// Warns of files next to those of the layers that are ignored.
@@ -114,8 +145,8 @@ Status check_picture(const std::vector<MappedImagery>& layers, std::vector<std::
                    "over"};
 }
 
-/// Opens elevation as far around the imagery as can be read fast, at most to about the horizon of a
-/// low flight.
+/// Opens elevation to about the horizon of a low flight; with all posts only as far around the
+/// imagery as can be read fast.
 Result<ElevationModel> open_elevation(const WorldSpec& spec,
                                       const WorldLayout& layout,
                                       std::vector<std::string>& warnings) {
@@ -129,6 +160,7 @@ Result<ElevationModel> open_elevation(const WorldSpec& spec,
   }
   constexpr double kReachesM[] = {30e3, 10e3, 3e3, 300.0};
   constexpr double kMaxPosts = 40e6;
+  constexpr double kMaxFarPosts = 10e6;
   Error last;
   for (const double reach_m : kReachesM) {
     std::vector<std::string> doubts;
@@ -140,6 +172,14 @@ Result<ElevationModel> open_elevation(const WorldSpec& spec,
                                       least ? std::numeric_limits<double>::max() : kMaxPosts,
                                       doubts);
     if (model) {
+      if (reach_m < kReachesM[0]) {
+        const Status extended = model->extend(spec.elevation,
+                                              layout.plane,
+                                              layout.extent,
+                                              layout.extent.grown(kReachesM[0]),
+                                              kMaxFarPosts);
+        if (!extended) return extended.error();
+      }
       warnings.insert(warnings.end(), doubts.begin(), doubts.end());
       return model;
     }

@@ -105,6 +105,20 @@ struct Reader {
     return (folder / file).lexically_normal();
   }
 
+  std::optional<std::array<double, 2>> range(Fields& in) {
+    const Json* value = in.find("range");
+    if (value == nullptr) return std::nullopt;
+    const bool numbers = value->is_array() && value->size() == 2 && value->at(0).is_number() &&
+                         value->at(1).is_number();
+    std::array<double, 2> range{};
+    if (numbers) range = {value->at(0).get<double>(), value->at(1).get<double>()};
+    if (!(range[0] >= -1e38 && range[0] < range[1] && range[1] <= 1e38)) {
+      in.fail("range", *value, "must be [LOW, HIGH], two numbers in [-1e+38, 1e+38], LOW < HIGH");
+      return std::nullopt;
+    }
+    return range;
+  }
+
   ImageryLayer imagery(const Json& object, const std::string& path) {
     Fields in = fields(object, path);
     ImageryLayer layer;
@@ -112,6 +126,7 @@ struct Reader {
     layer.attribution = in.text("attribution").value_or("");
     layer.crs = in.text("crs");
     layer.nodata = in.number("nodata", -1e38, 1e38);
+    layer.range = range(in);
     in.reject_unknown();
     return layer;
   }
@@ -209,6 +224,7 @@ Json to_json(const WorldSpec& spec, const fs::path& folder) {
     Json entry{{"file", path_in(folder, layer.file)}};
     if (layer.crs) entry["crs"] = *layer.crs;
     if (layer.nodata) entry["nodata"] = *layer.nodata;
+    if (layer.range) entry["range"] = *layer.range;
     if (!layer.attribution.empty()) entry["attribution"] = layer.attribution;
     json["imagery"].push_back(entry);
   }
