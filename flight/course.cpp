@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/course_plan.hpp"
 #include "flight/flight.hpp"
@@ -13,12 +13,6 @@
 
 namespace overfly::flight {
 namespace {
-
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 struct Limit {
   const char* field;

@@ -28,9 +28,13 @@ Eigen::Vector3d parabola_velocity(double t_s,
 
 class LogFlight final : public KnownFlight {
  public:
-  LogFlight(Trajectory T_world_body, std::vector<std::string> warnings, std::string description)
+  LogFlight(Trajectory T_world_body,
+            std::vector<StampedRotation> rotations,
+            std::vector<std::string> warnings,
+            std::string description)
       : KnownFlight(std::move(description), std::move(warnings)),
-        trajectory_(std::move(T_world_body)) {
+        trajectory_(std::move(T_world_body)),
+        rotations_(std::move(rotations)) {
     const std::size_t count = trajectory_.size();
     for (std::size_t i = 0; i < count; ++i) velocities_m_s_.push_back(velocity_of(i));
   }
@@ -51,7 +55,9 @@ class LogFlight final : public KnownFlight {
           return t < stamped.t_ns;
         });
     const auto pose = static_cast<std::size_t>(after - poses.begin()) - 1;
-    return between(pose, t_ns);
+    AircraftState state = between(pose, t_ns);
+    if (!rotations_.empty()) turn(file_ns, state);
+    return state;
   }
 
   [[nodiscard]] std::pair<double, Eigen::Vector3d> point(std::size_t i) const {
@@ -78,30 +84,55 @@ class LogFlight final : public KnownFlight {
     return state;
   }
 
+  /// The angular rate of the SLERP from a to b, in body [rad/s].
+  static Eigen::Vector3d rate_between(const Eigen::Quaterniond& R_world_a,
+                                      const Eigen::Quaterniond& R_world_b,
+                                      std::int64_t step_ns) {
+    Eigen::Quaterniond step = R_world_a.conjugate() * R_world_b;
+    if (step.w() < 0.0) step.coeffs() = -step.coeffs();
+    const Eigen::AngleAxisd turn(step);
+    return turn.axis() * (turn.angle() / s_from_ns(step_ns));
+  }
+
+  /// Gives a state the attitude and the angular rate of the rotations around its time.
+  void turn(std::int64_t file_ns, AircraftState& state) const {
+    const auto next = std::upper_bound(
+        rotations_.begin() + 1,
+        rotations_.end() - 1,
+        file_ns,
+        [](std::int64_t t, const StampedRotation& rotation) { return t < rotation.t_ns; });
+    const StampedRotation& a = *(next - 1);
+    const StampedRotation& b = *next;
+    const double alpha =
+        static_cast<double>(file_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+    state.T_world_body.rotation = a.R_world_body.slerp(alpha, b.R_world_body).normalized();
+    state.omega_body_rad_s = rate_between(a.R_world_body, b.R_world_body, b.t_ns - a.t_ns);
+  }
+
   /// From row i to i + 1; the angular rate is that of the SLERP.
   [[nodiscard]] AircraftState between(std::size_t i, std::int64_t t_ns) const {
     const AircraftState a = row_state(i);
     const AircraftState b = row_state(i + 1);
     AircraftState state = interpolate(a, b, t_ns);
     state.airspeed_m_s = state.v_body_world_m_s.norm();  // a pose file contains no wind
-    Eigen::Quaterniond step = a.T_world_body.rotation.conjugate() * b.T_world_body.rotation;
-    if (step.w() < 0.0) step.coeffs() = -step.coeffs();
-    const Eigen::AngleAxisd turn(step);
-    state.omega_body_rad_s = turn.axis() * (turn.angle() / s_from_ns(b.t_ns - a.t_ns));
+    state.omega_body_rad_s =
+        rate_between(a.T_world_body.rotation, b.T_world_body.rotation, b.t_ns - a.t_ns);
     return state;
   }
 
   Trajectory trajectory_;
+  std::vector<StampedRotation> rotations_;
   std::vector<Eigen::Vector3d> velocities_m_s_;
 };
 
 }  // namespace
 
 std::unique_ptr<TruthSource> fly_poses(Trajectory T_world_body,
+                                       std::vector<StampedRotation> rotations,
                                        std::vector<std::string> warnings,
                                        std::string description) {
   return std::make_unique<LogFlight>(
-      std::move(T_world_body), std::move(warnings), std::move(description));
+      std::move(T_world_body), std::move(rotations), std::move(warnings), std::move(description));
 }
 
 Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
@@ -115,8 +146,10 @@ Result<std::unique_ptr<TruthSource>> fly_log(const std::filesystem::path& file,
                  file.string() + ": " + std::to_string(log->T_world_body.size()) +
                      " poses: a flight needs at least 2"};
   }
-  return fly_poses(
-      std::move(log->T_world_body), std::move(log->warnings), "log: " + file.filename().string());
+  return fly_poses(std::move(log->T_world_body),
+                   {},
+                   std::move(log->warnings),
+                   "log: " + file.filename().string());
 }
 
 }  // namespace overfly::flight

@@ -1,6 +1,7 @@
 #include "core/text/number_text.hpp"
 
 #include <charconv>
+#include <cstdio>
 #include <system_error>
 
 #include "core/time.hpp"
@@ -11,6 +12,12 @@ std::string number_text(double value) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
   return {buffer, error == std::errc() ? end : buffer};
+}
+
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
 }
 
 std::string seconds_text(std::int64_t t_ns) {

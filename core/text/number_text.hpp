@@ -8,6 +8,8 @@ namespace overfly {
 
 /// The shortest decimal that parses to the same double.
 [[nodiscard]] std::string number_text(double value);
+/// With at most six significant digits, for messages: "20.2".
+[[nodiscard]] std::string short_text(double value);
 /// Seconds with nine decimals, exact.
 [[nodiscard]] std::string seconds_text(std::int64_t t_ns);
 /// "1 gap", "2 gaps". @param noun  that forms its plural with an s

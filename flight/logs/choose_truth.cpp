@@ -101,7 +101,14 @@ Result<TruthChoice> choose_truth(const std::vector<StreamInfo>& streams, const s
       best = static_cast<StreamId>(i);
     }
   }
-  if (!best) return Error{ErrorCode::kUnreadable, "the log has no valid positions"};
+  if (!best) {
+    std::string message = "the log has no valid positions";
+    for (const StreamInfo& stream : streams) {
+      if (stream.description.position == PositionKind::kNone) continue;
+      if (const std::string text = wrong_values_text(stream); !text.empty()) message += "; " + text;
+    }
+    return Error{ErrorCode::kUnreadable, message};
+  }
   TruthChoice choice{*best, std::nullopt, reason_for(streams, *best)};
   if (!name.empty()) {
     const Result<StreamId> named = named_source(streams, name);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/outside/source_policy.hpp"
@@ -36,8 +37,14 @@ struct StreamInfo {
   /// Of streams with positions or attitudes:
   std::uint64_t positions = 0;
   std::uint64_t attitudes = 0;
+  /// Intervals between valid positions that are as long as a gap.
+  std::uint64_t position_gaps = 0;
+  std::int64_t longest_position_gap_ns = 0;
   /// Samples left out: no fix, not finite, outside of their ranges.
   std::uint64_t invalid = 0;
+  /// Those of them that are not finite or outside of their ranges, and the first one.
+  std::uint64_t wrong_values = 0;
+  std::optional<std::pair<LogTime, WrongValue>> first_wrong_value;
   double reach_m = 0.0;  ///< largest horizontal distance from the first position
   /// Steps between positions of more than 20 m and 150 m/s.
   std::uint64_t jumps = 0;
@@ -48,6 +55,10 @@ struct StreamInfo {
   /// The first origin of local positions: those before it count from it as well.
   std::optional<LocalOrigin> first_origin;
 };
+
+/// "ATT: 101 samples cannot be right and were left out, the first at 100 s: a quaternion
+/// of norm 2". Empty if there are none.
+[[nodiscard]] std::string wrong_values_text(const StreamInfo& stream);
 
 /// The time from a start of a vehicle's clock to the next.
 struct BootInfo {
@@ -79,13 +90,15 @@ struct OpenedLog {
   /// that part of the log was read.
   std::vector<LogEvent> events_before;
   std::optional<TruthChoice> truth;
-  /// The positions of the chosen truth stay within kGroundReachM of the first one.
+  /// The positions of the chosen truth stay within kGroundReachM of the first one, and within what
+  /// kGroundSpeedMS reaches in their time.
   bool on_ground = false;
   std::vector<std::string> warnings;
 };
 
 inline constexpr std::size_t kMaxEvents = 10000;
 inline constexpr double kGroundReachM = 30.0;
+inline constexpr double kGroundSpeedMS = 3.0;
 
 /// Detects the format by the first bytes of a file.
 /// Errors: as ReadableFile::open; kUnreadable for other formats.

@@ -1,4 +1,4 @@
-// A pose of a flight log.
+// Poses and attitudes of a flight log.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +14,12 @@ struct LogPose {
   /// [m] from an unknown origin.
   Eigen::Vector3d position;
   Eigen::Quaterniond R_ned_body;  ///< body forward-right-down relative to north-east-down
+};
+
+/// An attitude of the aircraft by the vehicle's clock.
+struct LogAttitude {
+  std::int64_t t_ns = 0;
+  Eigen::Quaternionf R_ned_body;  ///< body forward-right-down; not exactly of unit length
 };
 
 }  // namespace overfly::flight::logs

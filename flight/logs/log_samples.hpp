@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "flight/logs/log_pose.hpp"
 #include "flight/logs/truth/logged_truth.hpp"
 
 namespace overfly::flight::logs {
@@ -18,11 +19,6 @@ struct LogPosition {
   /// Latitude, longitude [deg] and height above the samples' datum [m], or north, east, down [m]
   /// from an unknown origin.
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-};
-
-struct LogAttitude {
-  std::int64_t t_ns = 0;
-  Eigen::Quaternionf R_ned_body;  ///< body forward-right-down; not exactly of unit length
 };
 
 struct LogSamples : LoggedTruth {

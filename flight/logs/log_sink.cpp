@@ -81,7 +81,7 @@ void LogSink::position(StreamId id, const LogTime& time, const Eigen::Vector3d& 
   if (is_plausible(position_kind(id), value)) {
     take_position(id, time, value);
   } else {
-    take_invalid(id);
+    wrong_value(id, time, {.position = value});
   }
 }
 
@@ -90,7 +90,7 @@ void LogSink::attitude(StreamId id, const LogTime& time, const Eigen::Quaternion
   if (norm >= 0.9 && norm <= 1.1) {
     take_attitude(id, time, R_ned_body.normalized());
   } else {
-    take_invalid(id);
+    wrong_value(id, time, {.quaternion_norm = norm});
   }
 }
 

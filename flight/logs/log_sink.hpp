@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/motion/flight_event.hpp"
+#include "core/motion/pose.hpp"
 #include "core/sensors/sensor_samples.hpp"
 #include "flight/logs/local_grid.hpp"
 
@@ -71,6 +72,13 @@ struct LogEvent {
 /// what a flight does not report: camera triggers.
 [[nodiscard]] std::optional<FlightEvent> flight_event_of(EventKind kind, const std::string& text);
 
+/// A position or an attitude that cannot be right: one of them is set.
+struct WrongValue {
+  std::optional<Eigen::Vector3d> position{};  ///< as the stream's PositionKind
+  std::optional<double> quaternion_norm{};
+  std::optional<RollPitchYaw> angles{};
+};
+
 /// Receives what a reader finds, in the order of the file.
 ///
 /// Samples that cannot be right are left out and counted: see position() and attitude().
@@ -98,6 +106,11 @@ class LogSink {
                        const SensorSamples& /*samples*/) {}
   /// A sample that its sender marks as invalid, e.g. without a fix.
   void no_sample(StreamId id) { take_invalid(id); }
+  /// A value that cannot be right.
+  void wrong_value(StreamId id, const LogTime& time, const WrongValue& value) {
+    take_wrong_value(id, time, value);
+    take_invalid(id);
+  }
   /// Where a stream's local positions count from, until the next origin of that stream.
   virtual void local_origin(StreamId id, const LocalOrigin& origin) = 0;
   /// Something was read that is needed to understand what follows: a format, a name, a state.
@@ -116,6 +129,10 @@ class LogSink {
                              const LogTime& time,
                              const Eigen::Quaterniond& R_ned_body) = 0;
   virtual void take_invalid(StreamId id) = 0;
+  /// What is wrong with the sample of the take_invalid() that follows.
+  virtual void take_wrong_value(StreamId /*id*/,
+                                const LogTime& /*time*/,
+                                const WrongValue& /*value*/) {}
   /// @return how the stream's positions are given
   [[nodiscard]] virtual PositionKind position_kind(StreamId id) const = 0;
 };

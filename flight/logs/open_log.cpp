@@ -7,6 +7,7 @@
 #include "core/cancel.hpp"
 #include "core/outside/forward_reader.hpp"
 #include "core/text/number_text.hpp"
+#include "core/time.hpp"
 #include "flight/logs/csv/csv_reader.hpp"
 #include "flight/logs/dataflash/dataflash_reader.hpp"
 #include "flight/logs/flight_log.hpp"
@@ -126,6 +127,9 @@ class OpeningSink final : public LogSink {
   void take_invalid(StreamId id) override {
     if (counted_) streams_[id].invalid();
   }
+  void take_wrong_value(StreamId id, const LogTime& time, const WrongValue& value) override {
+    if (counted_) streams_[id].wrong_value(time, value);
+  }
   [[nodiscard]] PositionKind position_kind(StreamId id) const override {
     return streams_[id].description().position;
   }
@@ -188,7 +192,16 @@ void OpeningSink::finish() {
     const StreamInfo& info = log_.streams.back();
     backward += info.backward;
     if (info.description.origin == SourceOrigin::kNone && !info.description.imu) continue;
-    gaps += info.gaps;
+    // Without messages there are no positions either.
+    if (info.positions == 0) gaps += info.gaps;
+    if (info.position_gaps > 0) {
+      log_.warnings.push_back(counted(info.position_gaps, "gap") + " between valid positions of " +
+                              info.description.name + ", the longest " +
+                              short_text(s_from_ns(info.longest_position_gap_ns)) + " s long");
+    }
+    if (std::string text = wrong_values_text(info); !text.empty()) {
+      log_.warnings.push_back(std::move(text));
+    }
     if (info.jumps > 0) {
       log_.warnings.push_back(counted(info.jumps, "jump") + " of positions in " +
                               info.description.name + ", the largest by " +
@@ -216,14 +229,16 @@ void OpeningSink::finish() {
   if (const Result<TruthChoice> truth = choose_truth(log_.streams, "")) {
     log_.truth = *truth;
     const StreamInfo& source = log_.streams[truth->position];
-    log_.on_ground = source.reach_m <= kGroundReachM;
+    const double span_s = s_from_ns(source.last_ns.value_or(0) - source.first_ns.value_or(0));
+    log_.on_ground = source.reach_m <= std::min(kGroundReachM, kGroundSpeedMS * span_s);
   } else {
     log_.warnings.push_back(log_.slice.is_whole() ? truth.error().message
                                                   : "no valid positions in the time asked for");
   }
   if (log_.on_ground) {
     log_.warnings.emplace_back(
-        "the aircraft stays on the ground: its positions lie within 30 m of the first one");
+        "the aircraft stays on the ground: its positions lie within 30 m of the first one, and it "
+        "is slower than 3 m/s");
   }
 }
 

@@ -24,6 +24,7 @@ class StreamStatistics {
   void position(const LogTime& time, const Eigen::Vector3d& value);
   void attitude() { ++info_.attitudes; }
   void invalid() { ++info_.invalid; }
+  void wrong_value(const LogTime& time, const WrongValue& value);
   void local_origin(const LocalOrigin& origin) {
     info_.georeferenced = true;
     if (!info_.first_origin) info_.first_origin = origin;
@@ -37,14 +38,25 @@ class StreamStatistics {
     std::int64_t last_ns = 0;
     std::uint64_t messages = 0;
   };
-  void count_interval(std::int64_t interval_ns);
+  /// Finds gaps: intervals that are far longer than the mean of those before them.
+  class GapFinder {
+   public:
+    /// @return whether it is a gap
+    bool take(std::int64_t interval_ns);
+    [[nodiscard]] std::uint64_t intervals() const { return intervals_; }
+    [[nodiscard]] double sum_s() const { return sum_s_; }
+
+   private:
+    std::uint64_t intervals_ = 0;
+    double sum_s_ = 0.0;
+  };
 
   StreamInfo info_;
   std::optional<LogTime> last_;
   Span boot_;          ///< the boot that is being read
   Span longest_boot_;  ///< the earlier boot with the most messages
-  std::uint64_t intervals_ = 0;
-  double interval_sum_s_ = 0.0;
+  GapFinder message_gaps_;
+  GapFinder position_gaps_;
   std::optional<Eigen::Vector3d> first_position_;
   LogTime position_time_;  ///< of last_position_
   Eigen::Vector3d last_position_ = Eigen::Vector3d::Zero();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -123,30 +124,62 @@ std::vector<std::string> jump_warnings(const SmoothedLog& log) {
 struct PlacedPoses {
   LocalFrame frame;
   std::vector<Pose> poses;
+  std::vector<StampedRotation> rotations;  ///< R_log_body at the times of the logged attitudes
 };
+
+/// The logged attitudes, each relative to the horizon where the aircraft is then.
+/// @pre placed.poses are those of the log
+std::vector<StampedRotation> place_attitudes(const logs::LogTrajectory& log,
+                                             const PlacedPoses& placed) {
+  std::vector<StampedRotation> rotations;
+  rotations.reserve(log.attitudes.size());
+  std::size_t next = 0;
+  for (const logs::LogAttitude& attitude : log.attitudes) {
+    while (next < log.poses.size() && log.poses[next].t_ns < attitude.t_ns) ++next;
+    const std::size_t after = std::min(next, log.poses.size() - 1);
+    const std::size_t before = after > 0 ? after - 1 : 0;
+    const std::int64_t from_ns = log.poses[before].t_ns;
+    const std::int64_t to_ns = log.poses[after].t_ns;
+    const double alpha =
+        to_ns > from_ns ? s_from_ns(attitude.t_ns - from_ns) / s_from_ns(to_ns - from_ns) : 0.0;
+    const Eigen::Vector3d p_log = placed.poses[before].translation +
+                                  std::clamp(alpha, 0.0, 1.0) * (placed.poses[after].translation -
+                                                                 placed.poses[before].translation);
+    const Geodetic point = placed.frame.geodetic_from_world(p_log);
+    const Eigen::Quaterniond R_ned_body = attitude.R_ned_body.cast<double>().normalized();
+    rotations.push_back(
+        {attitude.t_ns, placed.frame.R_world_enu_at(point) * logs::R_enu_ned() * R_ned_body});
+  }
+  return rotations;
+}
 
 Result<PlacedPoses> place_poses(const logs::LogTrajectory& log, const LogFlightOptions& options) {
   if (options.local_origin) {
-    PlacedPoses placed{LocalFrame(*options.local_origin), {}};
+    PlacedPoses placed{LocalFrame(*options.local_origin), {}, {}};
     for (const logs::LogPose& pose : log.poses) {
       placed.poses.push_back(
           {logs::R_enu_ned() * pose.R_ned_body, logs::R_enu_ned() * pose.position});
     }
+    for (const logs::LogAttitude& attitude : log.attitudes) {
+      placed.rotations.push_back(
+          {attitude.t_ns, logs::R_enu_ned() * attitude.R_ned_body.cast<double>().normalized()});
+    }
     return placed;
   }
-  const Result<double> separation =
-      logs::separation_of(log.height, log.position_source, options.geoid_separation_m);
+  const Result<double> separation = logs::separation_of(
+      log.height, log.position_source, options.geoid_separation_m.value_or(0.0));
   if (!separation) return separation.error();
   const auto geodetic = [&](const logs::LogPose& pose) {
     return geodetic_from_deg(pose.position.x(), pose.position.y(), pose.position.z() + *separation);
   };
-  PlacedPoses placed{LocalFrame(geodetic(log.poses.front())), {}};
+  PlacedPoses placed{LocalFrame(geodetic(log.poses.front())), {}, {}};
   for (const logs::LogPose& pose : log.poses) {
     const Geodetic point = geodetic(pose);
     placed.poses.push_back(
         {placed.frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body,
          placed.frame.world_from_geodetic(point)});
   }
+  placed.rotations = place_attitudes(log, placed);
   return placed;
 }
 
@@ -179,11 +212,32 @@ Status check_extent(const logs::LogTrajectory& log, const std::vector<Eigen::Vec
   return {};
 }
 
+/// Heights above sea level that are flown as heights above the ellipsoid are wrong by the geoid's.
+void warn_of_sea_level(const LogFlightOptions& options,
+                       logs::HeightDatum height,
+                       const std::string& source,
+                       const LocalFrame& log,
+                       std::vector<std::string>& warnings) {
+  if (height != logs::HeightDatum::kMeanSeaLevel || options.geoid_separation_m || options.rebase ||
+      !options.sea_level_m) {
+    return;
+  }
+  const double wrong_by_m = std::abs(options.sea_level_m(log.origin()));
+  warnings.push_back("the heights of " + source +
+                     " are above mean sea level and, without geoid_separation_m, are flown as "
+                     "heights above the ellipsoid: they may be wrong by about " +
+                     std::to_string(std::lround(wrong_by_m)) + " m here");
+}
+
 SensorRequest sensor_request(const LogFlightOptions& options,
                              const std::string& source,
                              std::int64_t begin_ns,
                              std::int64_t end_ns) {
-  return {source, begin_ns, end_ns, options.geoid_separation_m, options.rebase.has_value()};
+  return {source,
+          begin_ns,
+          end_ns,
+          options.geoid_separation_m.value_or(0.0),
+          options.rebase.has_value()};
 }
 
 Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
@@ -192,8 +246,8 @@ Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
                                                   const LocalFrame& frame,
                                                   const HeightQuery& ground,
                                                   const std::atomic<bool>* cancel) {
-  Result<SmoothedLog> log =
-      smooth_log(opened, request, *options.smooth, options.geoid_separation_m, cancel);
+  Result<SmoothedLog> log = smooth_log(
+      opened, request, *options.smooth, options.geoid_separation_m.value_or(0.0), cancel);
   if (!log) return log.error();
   std::vector<Eigen::Vector3d> path;
   const smoothing::SmoothMotion& motion = log->smoothed.motion;
@@ -205,6 +259,7 @@ Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
   std::vector<std::string> warnings = opened.warnings;
   warnings.insert(warnings.end(), log->warnings.begin(), log->warnings.end());
   for (std::string& text : jump_warnings(*log)) warnings.push_back(std::move(text));
+  warn_of_sea_level(options, log->height, log->position_source, log->frame, warnings);
   std::string description = "log: " + opened.file.filename().string() + ", " +
                             log->position_source + " with the attitude of " + log->attitude_source +
                             ", smoothed" + (options.rebase ? ", moved" : "");
@@ -242,6 +297,7 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   if (options.smooth) return fly_smoothed(*opened, request, options, frame, ground, cancel);
 
   request.attitude_offset_ns = ns_from_s(options.time_offset_s);
+  request.keep_attitudes = true;
   Result<logs::LogTrajectory> log = logs::read_log_trajectory(*opened, request, cancel);
   if (!log) return log.error();
   if (log->georeferenced && options.local_origin) {
@@ -276,7 +332,14 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   }
   std::vector<std::string> warnings = opened->warnings;
   warnings.insert(warnings.end(), log->warnings.begin(), log->warnings.end());
+  if (log->georeferenced) {
+    warn_of_sea_level(options, log->height, log->position_source, log_frame, warnings);
+  }
+  for (StampedRotation& rotation : placed->rotations) {
+    rotation.R_world_body = (T_world_log.rotation * rotation.R_world_body).normalized();
+  }
   auto flown = fly_poses(std::move(trajectory),
+                         std::move(placed->rotations),
                          std::move(warnings),
                          "log: " + file.filename().string() + ", " + log->position_source +
                              " with the attitude of " + log->attitude_source +

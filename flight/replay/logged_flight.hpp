@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,12 +46,16 @@ struct LogFlightOptions {
   /// By the vehicle's clock; the whole flight without them.
   std::optional<double> from_s;
   std::optional<double> to_s;
-  /// Empty: positions by cubic Hermite splines through the logged ones, rotations by SLERP.
+  /// Empty: positions by cubic Hermite splines through the logged ones, rotations by SLERP between
+  /// the logged attitudes at their own times.
   std::optional<smoothing::SmoothingOptions> smooth;
   /// Added to the times of the attitudes of a flight that is not smoothed.
   double time_offset_s = 0.0;
-  /// Height of the geoid above the ellipsoid: logs have heights above mean sea level.
-  double geoid_separation_m = 0.0;
+  /// Height of the geoid above the ellipsoid: logs have heights above mean sea level. Empty: 0, and
+  /// a flight at its own place is warned of.
+  std::optional<double> geoid_separation_m;
+  /// Height of the geoid above the ellipsoid at a place [m], for that warning; none without it.
+  std::function<double(const Geodetic& place)> sea_level_m;
   std::optional<Rebase> rebase;
   /// Where positions count from if the log does not state it; east, north, up from there. Not for
   /// smoothed flights.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "core/time.hpp"
 #include "flight/logs/log_samples.hpp"
 #include "flight/logs/ned_attitude.hpp"
@@ -22,7 +23,7 @@ void warn_of_gaps(const smoothing::FitReport& report,
                   const std::string& source,
                   std::vector<std::string>& warnings) {
   if (report.longest_gap_s <= kLongGapS) return;
-  warnings.push_back(source + ": a gap of " + std::to_string(report.longest_gap_s) +
+  warnings.push_back(source + ": a gap of " + short_text(report.longest_gap_s) +
                      " s is bridged without any sample");
 }
 

@@ -13,6 +13,7 @@
 #include "server/record/rows/recorded_events.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
+#include "terrain/sea_level.hpp"
 
 namespace overfly::server {
 namespace {
@@ -22,9 +23,8 @@ Eigen::Vector2d imagery_centre(const Scenario& scenario, const terrain::World& w
   const auto* layers = std::get_if<terrain::WorldSpec>(&scenario.world);
   if (layers != nullptr && !layers->origin) return {0.0, 0.0};  // the origin is that centre
   const terrain::TileGrid& grid = world.tiles->grid();
-  const double tile_m = grid.tile_m(0);
-  const Eigen::Vector3d centre = world.tiles->world_from_map(
-      grid.left_x_m + 0.5 * grid.cols * tile_m, grid.top_y_m - 0.5 * grid.rows * tile_m);
+  const Eigen::Vector3d centre = world.tiles->world_from_map(grid.left_x_m + 0.5 * grid.width_m,
+                                                             grid.top_y_m - 0.5 * grid.height_m);
   return centre.head<2>();
 }
 
@@ -94,6 +94,7 @@ Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
                      " is a flight log"};
   }
   flight::LogFlightOptions options = log.log;
+  options.sea_level_m = terrain::sea_level_m;
   if (log.rebase_to_imagery) {
     const Eigen::Vector2d centre = imagery_centre(scenario, world);
     options.rebase->at = flight::PlaceInWorld{centre.x(), centre.y()};

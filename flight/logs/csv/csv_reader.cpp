@@ -157,6 +157,9 @@ void PiecePass::take_samples(const std::vector<std::string_view>& fields, const 
     }
     values_[i] = field.value * piece_.columns[i]->factor;
   }
+  // Longitudes may count from 0 to 360 deg.
+  double& lon_deg = values_[static_cast<std::size_t>(CsvQuantity::kLon)];
+  if (lon_deg > 180.0 && lon_deg <= 360.0) lon_deg -= 360.0;
   if (piece_.has_samples()) {
     sink_.samples(id_, time, static_cast<int>(id_), csv_samples_of(piece_, values_, time.t_ns));
   }
@@ -181,7 +184,7 @@ void PiecePass::take_samples(const std::vector<std::string_view>& fields, const 
       is_angle(angles.yaw_rad, 2.0 * kPi)) {
     sink_.attitude(id_, time, R_ned_body_from(angles));
   } else {
-    sink_.no_sample(id_);
+    sink_.wrong_value(id_, time, {.angles = angles});
   }
 }
 

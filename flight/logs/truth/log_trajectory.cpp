@@ -7,10 +7,10 @@ namespace overfly::flight::logs {
 Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                           const TrajectoryRequest& request,
                                           const std::atomic<bool>* cancel) {
-  PoseJoiner joiner;
+  PoseJoiner joiner(request.keep_attitudes);
   Result<LoggedTruth> truth = read_truth_samples(log, request, joiner, cancel);
   if (!truth) return truth.error();
-  LogTrajectory trajectory{std::move(*truth), {}};
+  LogTrajectory trajectory{std::move(*truth), {}, {}};
   trajectory.poses = joiner.take_poses(trajectory.warnings);
   if (trajectory.poses.empty()) {
     return Error{ErrorCode::kUnreadable,
@@ -18,6 +18,7 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                      ": no position has an attitude of " + trajectory.attitude_source +
                      " on both sides within 1 s"};
   }
+  trajectory.attitudes = joiner.take_attitudes();
   return trajectory;
 }
 

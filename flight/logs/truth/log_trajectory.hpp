@@ -17,6 +17,8 @@ namespace overfly::flight::logs {
 
 struct LogTrajectory : LoggedTruth {
   std::vector<LogPose> poses;  ///< times strictly increasing
+  /// As PoseJoiner::take_attitudes(), if the request is to keep them.
+  std::vector<LogAttitude> attitudes;
 };
 
 /// Reads the positions of a log, and the attitudes interpolated (SLERP) at their times.
@@ -24,7 +26,7 @@ struct LogTrajectory : LoggedTruth {
 /// Of a clock that starts again within the log, the run with the most positions is used. Positions
 /// with a time that is not later than the one before, and those without an attitude on both sides
 /// within 1 s, are left out and counted.
-/// Memory: 64 bytes a pose.
+/// Memory: 64 bytes a pose, and 32 bytes an attitude that is kept.
 /// Errors: as read_truth_samples; kUnreadable if no pose is left.
 [[nodiscard]] Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
                                                         const TrajectoryRequest& request,

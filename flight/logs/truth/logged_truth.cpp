@@ -78,7 +78,15 @@ Result<LoggedTruth> read_truth_samples(const OpenedLog& log,
     return Error{ErrorCode::kUnreadable,
                  log.file.string() + ": " + source.description.name + ": " + what};
   };
-  if (!choice->attitude) return failed("no attitudes of the same vehicle are in the log");
+  if (!choice->attitude) {
+    std::string message = "no valid attitudes of the same vehicle are in the log";
+    for (const StreamInfo& stream : log.streams) {
+      const StreamDescription& description = stream.description;
+      if (!description.attitude || description.vehicle != source.description.vehicle) continue;
+      if (const std::string text = wrong_values_text(stream); !text.empty()) message += "; " + text;
+    }
+    return failed(message);
+  }
   sink.expect(source.positions);
   ChosenStreams streams(log, *choice, request, sink, cancel);
   if (Status status = read_log_into(log, streams); !status) return status.error();

@@ -29,6 +29,8 @@ struct TrajectoryRequest {
   std::int64_t attitude_offset_ns = 0;
   /// Attitudes are read from so much before to so much after the time asked for [ns].
   std::int64_t attitude_margin_ns = kMaxAttitudeStepNs;
+  /// A trajectory is to have the attitudes themselves as well.
+  bool keep_attitudes = false;
 };
 
 /// What the samples of a log's truth are.

@@ -15,36 +15,34 @@ constexpr std::size_t kJoinBlock = 4096;
 
 /// The attitude at a time between the first one not before it and the one in front of that.
 /// @param next  index of the first one not before the time
-template <typename Attitude>
-std::optional<Eigen::Quaterniond> attitude_at(const std::vector<Attitude>& attitudes,
+std::optional<Eigen::Quaterniond> attitude_at(const std::vector<LogAttitude>& attitudes,
                                               std::size_t next,
                                               std::int64_t t_ns) {
   if (next == attitudes.size()) return std::nullopt;
-  const Attitude& after = attitudes[next];
+  const LogAttitude& after = attitudes[next];
   if (after.t_ns == t_ns) {
-    return after.R_ned_body.template cast<double>().normalized();
+    return after.R_ned_body.cast<double>().normalized();
   }
   if (next == 0) return std::nullopt;
-  const Attitude& before = attitudes[next - 1];
+  const LogAttitude& before = attitudes[next - 1];
   if (t_ns - before.t_ns > kMaxAttitudeStepNs || after.t_ns - t_ns > kMaxAttitudeStepNs) {
     return std::nullopt;
   }
   const double alpha =
       static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after.t_ns - before.t_ns);
-  return before.R_ned_body.template cast<double>().normalized().slerp(
-      alpha, after.R_ned_body.template cast<double>().normalized());
+  return before.R_ned_body.cast<double>().normalized().slerp(
+      alpha, after.R_ned_body.cast<double>().normalized());
 }
 
 /// Sorts by time, keeping the order of equal ones, and removes all but the first of equal ones.
 /// @return the number of those that were removed
-template <typename Attitude>
-std::size_t order_attitudes(std::vector<Attitude>& attitudes) {
-  const auto earlier = [](const Attitude& a, const Attitude& b) { return a.t_ns < b.t_ns; };
+std::size_t order_attitudes(std::vector<LogAttitude>& attitudes) {
+  const auto earlier = [](const LogAttitude& a, const LogAttitude& b) { return a.t_ns < b.t_ns; };
   if (!std::is_sorted(attitudes.begin(), attitudes.end(), earlier)) {
     std::stable_sort(attitudes.begin(), attitudes.end(), earlier);
   }
-  const auto end =
-      std::unique(attitudes.begin(), attitudes.end(), [](const Attitude& a, const Attitude& b) {
+  const auto end = std::unique(
+      attitudes.begin(), attitudes.end(), [](const LogAttitude& a, const LogAttitude& b) {
         return a.t_ns == b.t_ns;
       });
   const auto removed = static_cast<std::size_t>(attitudes.end() - end);
@@ -112,10 +110,30 @@ void PoseJoiner::join(Run& run, std::int64_t until_ns) {
   const std::int64_t needed_ns =
       std::min(until_ns, run.last_position_ns.value_or(std::numeric_limits<std::int64_t>::min()));
   const auto keep = std::partition_point(
-      run.attitudes.begin(), run.attitudes.end(), [&](const Attitude& attitude) {
+      run.attitudes.begin(), run.attitudes.end(), [&](const LogAttitude& attitude) {
         return attitude.t_ns <= needed_ns;
       });
-  if (keep - run.attitudes.begin() > 1) run.attitudes.erase(run.attitudes.begin(), keep - 1);
+  if (keep - run.attitudes.begin() <= 1) return;
+  if (keep_attitudes_) run.used.insert(run.used.end(), run.attitudes.begin(), keep - 1);
+  run.attitudes.erase(run.attitudes.begin(), keep - 1);
+}
+
+void PoseJoiner::keep_attitudes_of(Run& run) {
+  kept_attitudes_ = std::move(run.used);
+  kept_attitudes_.insert(kept_attitudes_.end(), run.attitudes.begin(), run.attitudes.end());
+  (void)order_attitudes(kept_attitudes_);
+  if (run.poses.empty()) return;
+  // Every pose has attitudes on both sides.
+  const auto after = std::partition_point(
+      kept_attitudes_.begin(), kept_attitudes_.end(), [&](const LogAttitude& attitude) {
+        return attitude.t_ns < run.poses.back().t_ns;
+      });
+  kept_attitudes_.erase(after + 1, kept_attitudes_.end());
+  const auto from = std::partition_point(
+      kept_attitudes_.begin(), kept_attitudes_.end(), [&](const LogAttitude& attitude) {
+        return attitude.t_ns <= run.poses.front().t_ns;
+      });
+  kept_attitudes_.erase(kept_attitudes_.begin(), from - 1);
 }
 
 void PoseJoiner::add_pose(Run& run, const Position& position, const Eigen::Quaterniond& R) {
@@ -134,6 +152,7 @@ std::vector<LogPose> PoseJoiner::take_poses(std::vector<std::string>& warnings) 
   });
   Run& run = most->second;
   join(run, std::numeric_limits<std::int64_t>::max());
+  if (keep_attitudes_) keep_attitudes_of(run);
   if (!origins_.empty()) {
     for (std::size_t i = 0; i < run.without_origin; ++i) {
       run.poses[i].position = geodetic_from_local(origins_.front(), run.poses[i].position);

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <utility>
+
+#include "core/time.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -84,6 +87,16 @@ std::optional<double> number_in(const UlogField& field,
   if (field.type == "int64_t") return number_of<std::int64_t>(bytes);
   if (field.type == "uint64_t") return number_of<std::uint64_t>(bytes);
   return number_of<std::uint8_t>(bytes);
+}
+
+std::int64_t sampled_ns_in(const std::optional<UlogField>& sampled,
+                           std::span<const std::uint8_t> data,
+                           std::int64_t t_ns) {
+  if (!sampled) return t_ns;
+  const double sampled_us = number_in(*sampled, data).value_or(0.0);
+  const double earliest_us = 1e-3 * static_cast<double>(t_ns - kNsPerS);
+  if (!(sampled_us > 0.0 && sampled_us >= earliest_us)) return t_ns;
+  return sampled_us * 1e3 < static_cast<double>(t_ns) ? std::llround(sampled_us) * 1000 : t_ns;
 }
 
 bool UlogFormats::declare(std::string_view text) {

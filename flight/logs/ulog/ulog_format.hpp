@@ -24,6 +24,14 @@ struct UlogField {
                                               std::span<const std::uint8_t> data,
                                               std::size_t i = 0);
 
+/// When a message was measured [ns]: its timestamp_sample, or `t_ns` where that is missing, 0,
+/// later than `t_ns` or more than 1 s before it.
+/// @param sampled  timestamp_sample [us]
+/// @param t_ns     `timestamp`
+[[nodiscard]] std::int64_t sampled_ns_in(const std::optional<UlogField>& sampled,
+                                         std::span<const std::uint8_t> data,
+                                         std::int64_t t_ns);
+
 /// The formats of a file. Types may contain types that are declared later.
 class UlogFormats {
  public:

@@ -153,7 +153,9 @@ void UlogPass::pass_held() {
 void UlogPass::pass_data(Topic& topic,
                          const std::optional<LogTime>& time,
                          std::span<const std::uint8_t> data) {
-  sink_.message(topic.id, time);
+  std::optional<LogTime> measured = time;
+  if (time) measured->t_ns = sampled_ns_in(topic.plan.sampled, data, time->t_ns);
+  sink_.message(topic.id, measured);
   if (!time) return;
   if (topic.plan.description.position == PositionKind::kLocal) {
     const std::optional<LocalOrigin> origin = origin_in(topic.plan, data);
@@ -162,7 +164,7 @@ void UlogPass::pass_data(Topic& topic,
       sink_.local_origin(topic.id, *origin);
     }
   }
-  if (topic.wanted) pass_samples(topic.plan, data, topic.id, *time, sink_);
+  if (topic.wanted) pass_samples(topic.plan, data, topic.id, *measured, sink_);
   if (topic.wanted && topic.plan.description.sensors) {
     const auto samples = sensor_samples_in(topic.plan.sensor, data, time->t_ns);
     if (samples) sink_.samples(topic.id, *time, topic.plan.sensor.preference, *samples);

@@ -92,11 +92,7 @@ class UlogValues {
   }
   /// When it was measured, if the message says so.
   [[nodiscard]] std::int64_t sampled_ns(std::int64_t t_ns) const {
-    if (!plan_.sampled) return t_ns;
-    const double sampled_us = number_in(*plan_.sampled, data_).value_or(0.0);
-    const double earliest_us = 1e-3 * static_cast<double>(t_ns - kNsPerS);
-    if (!(sampled_us > 0.0 && sampled_us >= earliest_us)) return t_ns;
-    return sampled_us * 1e3 < static_cast<double>(t_ns) ? std::llround(sampled_us) * 1000 : t_ns;
+    return sampled_ns_in(plan_.sampled, data_, t_ns);
   }
   [[nodiscard]] double position(std::size_t i) const {
     return number_in(plan_.position[i], data_).value_or(kNoNumber) * plan_.position_scale[i];

@@ -85,6 +85,7 @@ TopicPlan plan_of(const UlogFormats& formats, const std::string& topic, std::uin
     find_topic_source(plan, formats, topic);
     if (plan.description.position == PositionKind::kNone && !plan.description.attitude) break;
     plan.description.origin = facts.origin;
+    plan.sampled = formats.find(topic, "timestamp_sample");
     plan.description.preference = 10 * facts.preference + instance;
   }
   plan.sensor = sensor_plan_of(formats, topic, instance);

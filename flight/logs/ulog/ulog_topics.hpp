@@ -17,6 +17,7 @@ namespace overfly::flight::logs {
 struct TopicPlan {
   StreamDescription description;
   std::optional<UlogField> time;      ///< [us] since the start
+  std::optional<UlogField> sampled;   ///< timestamp_sample of positions and attitudes [us]
   std::array<UlogField, 3> position;  ///< if description.position says so
   std::array<double, 3> position_scale{1.0, 1.0, 1.0};
   std::optional<UlogField> quaternion;             ///< w, x, y, z

@@ -15,6 +15,11 @@ TEST(NumberText, ParsesToTheSameNumber) {
   EXPECT_EQ(number_text(0.1), "0.1");
 }
 
+TEST(NumberText, IsShortForMessages) {
+  EXPECT_EQ(short_text(20.200000000000003), "20.2");
+  EXPECT_EQ(short_text(-1234567.0), "-1.23457e+06");
+}
+
 TEST(NumberText, GivesSecondsExactly) {
   EXPECT_EQ(seconds_text(1'500'000'001), "1.500000001");
   EXPECT_EQ(seconds_text(0), "0.000000000");

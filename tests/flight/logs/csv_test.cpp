@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -156,6 +158,74 @@ TEST_F(CsvLog, CountsWhatItLeavesOut) {
         "1 rows with a field that is not a number were left out in ATT"}) {
     EXPECT_THAT(log->warnings, Contains(warning));
   }
+}
+
+/// Rows at 5 Hz from 0 s on, to the north. @param fix  of each row
+std::string gps_rows(int count, double speed_m_s, const std::function<int(int)>& fix) {
+  std::string rows = "ms,lat,lon,ft,fix\n";
+  for (int i = 0; i < count; ++i) {
+    const auto lat = static_cast<std::int64_t>(470000000.0 + 0.2 * i * speed_m_s * 90.0);
+    rows += std::to_string(100000 + 200 * i) + "," + std::to_string(lat) + ",80000000,1000," +
+            std::to_string(fix(i)) + "\n";
+  }
+  return rows;
+}
+
+TEST_F(CsvLog, WarnsOfGapsBetweenValidPositions) {
+  write("gps.csv", gps_rows(60, 20.0, [](int i) { return i >= 20 && i < 30 ? 1 : 3; }));
+  const Result<OpenedLog> log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_EQ(log->streams[0].gaps, 0U);  // the rows are there
+  EXPECT_EQ(log->streams[0].position_gaps, 1U);
+  EXPECT_THAT(log->warnings,
+              Contains("1 gap between valid positions of GPS, the longest 2.2 s long"));
+}
+
+TEST_F(CsvLog, TellsAShortSliceOfAFlightFromAnAircraftOnTheGround) {
+  write("gps.csv", gps_rows(100, 11.0, [](int) { return 3; }));
+  const auto slice =
+      open_log(folder_.path() / "log.json", nullptr, {.slice = {5'000'000'000, 7'000'000'000}});
+  ASSERT_TRUE(slice.ok()) << slice.error().message;
+  EXPECT_LT(slice->streams[0].reach_m, kGroundReachM);
+  EXPECT_FALSE(slice->on_ground);
+  write("gps.csv", gps_rows(100, 0.2, [](int) { return 3; }));
+  const Result<OpenedLog> parked = open();
+  ASSERT_TRUE(parked.ok()) << parked.error().message;
+  EXPECT_TRUE(parked->on_ground);
+}
+
+TEST_F(CsvLog, SaysWhichValuesCannotBeRight) {
+  write("att.csv", "yaw,roll,pitch,s\n9000,10,0.1,1\n9000,10,0.1,2\n");
+  const std::string as_rad =
+      changed(kMapping, "\"unit\": \"deg\", \"scale\"", "\"unit\": \"rad\", \"scale\"");
+  write("log.json", as_rad);
+  Result<OpenedLog> log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const char* angles =
+      "ATT: 2 samples cannot be right and were left out, the first at 1 s: roll -572.95";
+  EXPECT_THAT(log->warnings, Contains(HasSubstr(angles)));
+  const auto flight = read_log_trajectory(*log, {});
+  ASSERT_FALSE(flight.ok());
+  EXPECT_THAT(
+      flight.error().message,
+      HasSubstr("GPS: no valid attitudes of the same vehicle are in the log; ATT: 2 samples"));
+
+  write("gps.csv", "ms,lat,lon,ft,fix\n101000,950000000,80000000,1000,3\n");
+  log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_THAT(
+      log->warnings,
+      Contains(HasSubstr("the log has no valid positions; GPS: 1 sample cannot be right and "
+                         "was left out, the first at 1 s: latitude 95")));
+}
+
+TEST_F(CsvLog, TakesLongitudesFrom0To360Deg) {
+  write("gps.csv", "ms,lat,lon,ft,fix\n101000,470000000,3520000000,1000,3\n");
+  const Result<OpenedLog> log = open();
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const auto flight = read_log_trajectory(*log, {});
+  ASSERT_TRUE(flight.ok()) << flight.error().message;
+  EXPECT_NEAR(flight->poses[0].position.y(), -8.0, 1e-9);
 }
 
 TEST_F(CsvLog, LeavesOutAnEndlessLine) {

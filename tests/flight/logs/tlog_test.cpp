@@ -82,7 +82,7 @@ TEST_F(TlogTest, ListsTheStreamsOfSeveralSystems) {
   ASSERT_TRUE(log->truth);
   EXPECT_EQ(log->truth->position, 1U);
   EXPECT_EQ(log->truth->attitude, 0U);
-  EXPECT_TRUE(log->on_ground);  // 25 m
+  EXPECT_FALSE(log->on_ground);  // 25 m in 1 s
   EXPECT_EQ(log->boots.size(), 2U);
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "core/motion/pose.hpp"
@@ -192,6 +193,38 @@ TEST(Ulog, ReadsAFlight) {
       rotation_angle_rad(pose.R_ned_body,
                          Eigen::Quaterniond(Eigen::AngleAxisd(0.105, Eigen::Vector3d::UnitX()))),
       1e-6);
+}
+
+TEST(Ulog, TakesTheTimesOfSamples) {
+  Bytes bytes = definitions();
+  append(bytes,
+         ulog_text('F',
+                   "sensor_gps:uint64_t timestamp;uint64_t timestamp_sample;double latitude_deg;"
+                   "double longitude_deg;double altitude_msl_m;uint8_t fix_type;"));
+  append(bytes, ulog_subscription(0, 5, "sensor_gps"));
+  for (int i = 0; i < 20; ++i) {
+    const auto time_us = static_cast<std::uint64_t>(2'000'000 + 100'000 * i);
+    append(bytes, attitude_message(time_us, 0.0));
+    Bytes data;
+    put(data, time_us);
+    // Where it cannot be right, the time of the message is taken.
+    put(data, i == 10 ? std::uint64_t{0} : i == 11 ? time_us + 1 : time_us - 150'000);
+    for (const double value : {47.0 + 1e-5 * i, 8.0, 500.0}) put(data, value);
+    data.push_back(3);
+    append(bytes, ulog_data(5, data));
+  }
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_ulog(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_EQ(log->streams[4].first_ns, 1'850'000'000);
+  const auto trajectory = read_log_trajectory(*log, {});
+  ASSERT_TRUE(trajectory.ok()) << trajectory.error().message;
+  ASSERT_GT(trajectory->poses.size(), 9U);
+  for (const LogPose& pose : trajectory->poses) {
+    const std::int64_t i = std::llround((pose.position.x() - 47.0) * 1e5);
+    const std::int64_t t_ns = 2'000'000'000 + 100'000'000 * i;
+    EXPECT_EQ(pose.t_ns, i == 10 || i == 11 ? t_ns : t_ns - 150'000'000) << i;
+  }
 }
 
 TEST(Ulog, KeepsLocalPositionsWithoutAnOriginLocal) {

@@ -129,6 +129,43 @@ TEST(LoggedFlight, ShiftsTheTimesOfAttitudes) {
   EXPECT_NEAR(roll_rad, log.row(132.5).angles.roll_rad, 2e-3);
 }
 
+TEST(LoggedFlight, FliesEveryLoggedAttitude) {
+  // A roll of 2 Hz, far faster than the positions at 5 Hz.
+  const testing::CsvFlight log;
+  const auto roll_rad = [](double t_s) { return 0.5 * std::sin(4.0 * kPi * t_s + 1.0); };
+  std::string rows = "t,roll,pitch,yaw\n";
+  for (int i = 0; i <= 9000; ++i) {
+    const double t_s = 100.0 + 0.01 * i;
+    rows += number_text(t_s) + ',' + number_text(roll_rad(t_s)) + ",0,0\n";
+  }
+  testing::write_text(log.mapping().parent_path() / "att.csv", rows);
+  const auto flight = flown_log(log, {}, log.frame());
+  for (double t_s = 20.005; t_s < 22.0; t_s += 0.01) {  // half way between two attitudes
+    const AircraftState state = state_of(*flight, t_s);
+    const testing::CsvFlight::Row row = log.row(100.0 + t_s);
+    const Eigen::Quaterniond R_world_body =
+        log.frame().R_world_enu_at(geodetic_from_deg(row.lat_deg, row.lon_deg, row.alt_msl_m)) *
+        R_world_body_from({roll_rad(100.0 + t_s), 0.0, 0.0});
+    EXPECT_LT(rotation_angle_rad(state.T_world_body.rotation, R_world_body), 1.2e-3);
+    const double rate_rad_s = 2.0 * kPi * std::cos(4.0 * kPi * (100.0 + t_s) + 1.0);
+    EXPECT_NEAR(state.omega_body_rad_s.x(), rate_rad_s, 6e-3);
+  }
+}
+
+TEST_P(LoggedFlights, WarnOfHeightsAboveSeaLevel) {
+  const testing::CsvFlight& log = log_;
+  options_.sea_level_m = [](const Geodetic& place) { return -deg_from_rad(place.lat_rad); };
+  const auto warned = Contains(HasSubstr(
+      "the heights of GPS are above mean sea level and, without geoid_separation_m, are flown as "
+      "heights above the ellipsoid: they may be wrong by about 47 m here"));
+  EXPECT_THAT(flown_log(log, options_, log.frame())->warnings(), warned);
+  options_.geoid_separation_m = 0.0;
+  EXPECT_THAT(flown_log(log, options_, log.frame())->warnings(), Not(warned));
+  options_.geoid_separation_m.reset();
+  options_.rebase.emplace().at = PlaceInWorld{0.0, 0.0};
+  EXPECT_THAT(flown_log(log, options_, log.frame())->warnings(), Not(warned));
+}
+
 TEST(LoggedFlight, ReadsOnlyASliceOfALargeLog) {
   const overfly::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "flight.bin";

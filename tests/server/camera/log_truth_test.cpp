@@ -46,6 +46,19 @@ class LogTruth : public ::testing::Test {
   overfly::testing::TemporaryFolder folder_;
 };
 
+TEST_F(LogTruth, WarnsOfHeightsAboveSeaLevel) {
+  for (const bool given : {false, true}) {
+    const auto flown = truth(R"({"file":")" + file("log.json") + '"' +
+                             (given ? R"(,"geoid_separation_m":0})" : "}"));
+    ASSERT_TRUE(flown.ok()) << flown.error().message;
+    const std::vector<std::string> warnings = (*flown)->warnings();
+    const auto warned = ::testing::Contains(HasSubstr("may be wrong by about"));
+    EXPECT_THAT(warnings,
+                given ? ::testing::Matcher<std::vector<std::string>>(::testing::Not(warned))
+                      : ::testing::Matcher<std::vector<std::string>>(warned));
+  }
+}
+
 TEST_F(LogTruth, IsMovedToTheCentreOfTheImagery) {
   const Scenario scenario =
       small_scenario({R"(flight.log={"file":")" + file("log.json") +
@@ -63,9 +76,9 @@ TEST_F(LogTruth, IsMovedToTheCentreOfTheImagery) {
     lowest_m = std::min(lowest_m, p.z() - opened->world.tiles->ground_up_m(p.x(), p.y()));
     if (t_ns != 5 * kNsPerS) continue;
     const terrain::TileGrid& grid = opened->world.tiles->grid();
-    const double tile_m = grid.tile_m(0);
+    ASSERT_LT(grid.width_m, 0.9 * grid.cols * grid.tile_m(0));  // the tiles are padded
     const Eigen::Vector3d centre = opened->world.tiles->world_from_map(
-        grid.left_x_m + 0.5 * grid.cols * tile_m, grid.top_y_m - 0.5 * grid.rows * tile_m);
+        grid.left_x_m + 0.5 * grid.width_m, grid.top_y_m - 0.5 * grid.height_m);
     EXPECT_LT((p.head<2>() - centre.head<2>()).norm(), 0.5);
   }
   EXPECT_NEAR(lowest_m, 150.0, 0.5);

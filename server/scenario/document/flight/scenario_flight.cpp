@@ -83,7 +83,7 @@ Result<LoggedFlight> logged_flight_from(Json& log, const FileResolver& files) {
     if (name != "file" && name != "camera_poses") flight.log_fields.push_back(name);
   }
   flight.log.source = log.value("source", "");
-  flight.log.geoid_separation_m = number_or_none(log, "geoid_separation_m").value_or(0.0);
+  flight.log.geoid_separation_m = number_or_none(log, "geoid_separation_m");
   if (log.contains("smooth")) flight.log.smooth = smoothing_from(log.at("smooth"));
   if (Status status = read_times(log, flight.log); !status) return status.error();
   if (log.contains("rebase")) {
