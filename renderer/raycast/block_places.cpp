@@ -68,6 +68,8 @@ void BlockPlaces::add(const Block& block) {
   if (!(std::abs(col) < 1e9 && std::abs(row) < 1e9)) return;
   Block placed = block;
   placed.tile = index_of({level, static_cast<int>(col), static_cast<int>(row)});
+  // A tile without imagery is not read, so that it has no border either.
+  if (placed.tile < 0 && !single && meets_imagery(extent, level)) return divide(block);
   if (placed.tile < 0) placed.kind = Block::Kind::kVoid;
   band_.blocks.push_back(placed);
 }
@@ -82,6 +84,18 @@ void BlockPlaces::divide(const Block& block) {
   if (left < block.columns) {
     add(part_of(block, left, upper, block.columns - left, block.rows - upper));
   }
+}
+
+bool BlockPlaces::meets_imagery(const Extent& extent, int level) const {
+  const double side = terrain::kTileTexels * static_cast<double>(1 << level);
+  const auto index = [side](double texel) { return static_cast<int>(std::floor(texel / side)); };
+  const int last_row = index(extent.high_v), last_col = index(extent.high_u);
+  for (int row = index(extent.low_v); row <= last_row; ++row) {
+    for (int col = index(extent.low_u); col <= last_col; ++col) {
+      if (tiles_.coverage({level, col, row}) != terrain::TileCoverage::kNone) return true;
+    }
+  }
+  return false;
 }
 
 std::int32_t BlockPlaces::index_of(const TileId& id) {

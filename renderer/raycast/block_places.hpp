@@ -33,6 +33,8 @@ class BlockPlaces {
     float low_lod, high_lod;
   };
   [[nodiscard]] static Extent extent_of(const Block& block);
+  /// True if a tile of this level on which a part of the extent lies has imagery.
+  [[nodiscard]] bool meets_imagery(const Extent& extent, int level) const;
   /// Index in the band's list of tiles, or -1 if the tile has no imagery.
   std::int32_t index_of(const terrain::TileId& id);
   void divide(const Block& block);

@@ -42,6 +42,8 @@ struct Dataset {
   std::string camera_name;           ///< "cam0", "image_0", ...; empty if there is only one
   std::vector<DatasetImage> images;  ///< at least one
   CameraModel camera;
+  /// The data set's own calibration, also if another camera was given; KITTI's has no size.
+  std::optional<CameraModel> own_camera;
   std::optional<Pose> T_body_camera;  ///< the mount: EuRoC's T_BS
   /// KITTI: pose of this camera in the frame of image_0, which the truth files use.
   std::optional<Pose> T_first_camera;

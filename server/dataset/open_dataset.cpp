@@ -129,6 +129,7 @@ Result<Dataset> open_dataset(const DatasetOptions& options) {
   const Result<CameraModel> camera = choose_camera(options, *listed);
   if (!camera) return camera.error();
   dataset.camera = *camera;
+  dataset.own_camera = listed->camera;
   return std::move(dataset);
 }
 

@@ -86,8 +86,8 @@ Result<ListedDataset> read_tum_mono(const DatasetOptions& options) {
     listed.dataset.notes.push_back(std::string(name) +
                                    " is not applied: the estimator gets the images as they are");
   }
-  if (options.camera) return listed;
   const Result<CameraModel> camera = read_tum_mono_camera(folder / "camera.txt");
+  if (!camera && options.camera) return listed;
   if (!camera) return camera.error();
   listed.camera = *camera;
   return listed;

@@ -1,5 +1,10 @@
+#include <cstdio>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "calibration/model_difference.hpp"
+#include "core/text/number_text.hpp"
 #include "flight/logs/flight_log.hpp"
 #include "flight/logs/images/logged_images.hpp"
 #include "server/dataset/grey_image.hpp"
@@ -73,6 +78,42 @@ Status check_links(const fs::path& folder, const SourcePolicy& sources) {
   return {};
 }
 
+std::string intrinsics_text(const CameraModel& camera) {
+  const PinholeCamera& k = camera.pinhole();
+  const Distortion& lens = camera.distortion();
+  std::string text = "fx " + number_text(k.fx_px) + ", fy " + number_text(k.fy_px) + ", cx " +
+                     number_text(k.cx_px) + ", cy " + number_text(k.cy_px) + " px, distortion " +
+                     to_string(lens.model);
+  for (int i = 0; i < coefficient_count(lens.model); ++i) text += ' ' + number_text(lens.k[i]);
+  return text;
+}
+
+/// Compares the camera with the calibration of its data set, which it replaces.
+/// @param own  of the size 0 x 0 px if the data set does not state it
+std::optional<std::string> calibration_doubt(const CameraModel& camera, const CameraModel& own) {
+  PinholeCamera pinhole = own.pinhole();
+  const PinholeCamera& size = camera.pinhole();
+  if (pinhole.width_px == 0 && pinhole.height_px == 0) {
+    pinhole.width_px = size.width_px;
+    pinhole.height_px = size.height_px;
+  }
+  // Of another size: the images are scaled, or the first one of them is an error.
+  if (pinhole.width_px != size.width_px || pinhole.height_px != size.height_px) return std::nullopt;
+  constexpr double kTolerancePx = 1.0;
+  const calibration::ModelDifference apart =
+      calibration::model_difference(camera, CameraModel(pinhole, own.distortion()));
+  if (apart.max_px <= kTolerancePx) return std::nullopt;
+  char distance[80];
+  std::snprintf(distance,
+                sizeof distance,
+                "by %.1f px in the mean, %.1f px at most",
+                apart.mean_px,
+                apart.max_px);
+  return "the camera (" + intrinsics_text(camera) +
+         ") contradicts the data set's own calibration (" + intrinsics_text(own) +
+         "): projections of the same ray differ " + distance + "; the camera's values are used";
+}
+
 Result<std::unique_ptr<ImageSource>> open_folder(const CameraSpec& camera,
                                                  const SourcePolicy& sources) {
   if (Status status = check_links(camera.images->source, sources); !status) return status.error();
@@ -87,6 +128,10 @@ Result<std::unique_ptr<ImageSource>> open_folder(const CameraSpec& camera,
   options.list_only = true;
   Result<Dataset> dataset = open_dataset(options);
   if (!dataset) return dataset.error();
+  if (dataset->own_camera) {
+    const auto doubt = calibration_doubt(camera.model, *dataset->own_camera);
+    if (doubt) dataset->warnings.push_back(camera.images->source.string() + ": " + *doubt);
+  }
   return std::unique_ptr<ImageSource>(std::make_unique<FolderImages>(std::move(*dataset), sources));
 }
 

@@ -64,12 +64,14 @@ Status FlightRun::open_maker() {
   const std::optional<std::int64_t> duration_ns = maker_->duration_ns();
   recorder_.set_length(duration_ns.value_or(0), duration_ns ? maker_->frames_total() : 0);
   if (Status status = recorder_.set_cameras(calibrated_); !status) return status;
-  const std::vector<std::string> doubts = maker_->flight_warnings();
+  std::vector<std::string> doubts;
+  for (const std::string& warning : maker_->image_warnings()) {
+    doubts.push_back("images: " + warning);
+  }
+  const std::vector<std::string> of_flight = maker_->flight_warnings();
+  doubts.insert(doubts.end(), of_flight.begin(), of_flight.end());
   recorder_.manifest().flight =
       RunManifest::Flight{maker_->flight_description(), doubts, maker_->log_start_ns()};
-  for (const std::string& warning : maker_->image_warnings()) {
-    if (Status status = recorder_.log(0, "warning", "images: " + warning); !status) return status;
-  }
   for (const std::string& warning : doubts) {
     if (Status status = recorder_.log(0, "warning", warning); !status) return status;
   }

@@ -134,6 +134,30 @@ TEST_F(BlockTiles, WithoutImageryAreVoid) {
   EXPECT_GT(ground, 60);
 }
 
+TEST_F(BlockTiles, ShowImageryUpToItsEdge) {
+  // Less than a tile's border from the left, upper, right and lower edge; the middle lies outside.
+  for (const Eigen::Vector2d& texel : {Eigen::Vector2d(-12.0, 700.0),
+                                       Eigen::Vector2d(700.0, -12.0),
+                                       Eigen::Vector2d(4092.0, 700.0),
+                                       Eigen::Vector2d(700.0, 4092.0)}) {
+    const Block block = slanted_block(texel, 1.0, 0.0, 16, 0);
+    place(block);
+    int nothing = 0;
+    for (const Block& part : band_.blocks) {
+      if (part.kind != Block::Kind::kVoid) continue;
+      for (int y = 0; y < part.rows; ++y) {
+        for (int x = 0; x < part.columns; ++x) {
+          const Eigen::Vector2d at = texel_of(part, x, y);
+          EXPECT_TRUE(at.minCoeff() < 0.0 || at.maxCoeff() >= 4096.0) << at.transpose();
+          ++nothing;
+        }
+      }
+    }
+    EXPECT_GE(nothing, 128);
+    EXPECT_LT(nothing, 224);
+  }
+}
+
 TEST_F(BlockTiles, BandsListEachTileOnce) {
   BlockPlaces places(ground_, band_);
   for (int i = 0; i < 8; ++i) {

@@ -192,6 +192,10 @@ TEST_F(CalibrateImages, RejectsInvalidCalibrationFilesWithTheirNames) {
     EXPECT_EQ(camera.error().code, ErrorCode::kUnreadable) << text;
     EXPECT_THAT(camera.error().message, HasSubstr("b.json")) << text;
   }
+  write_text(file("b.json"),
+             "cam0:\n  camera_model: pinhole\n  intrinsics: [300, 300, 240, 180]\n");
+  EXPECT_THAT(read_calibrated_camera(file("b.json")).error().message,
+              HasSubstr("must be a calibration file of Overfly, JSON written by"));
 }
 
 }  // namespace

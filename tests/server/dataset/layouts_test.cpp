@@ -158,6 +158,20 @@ TEST(TumMonoLayout, ReadsEveryModelOfItsCalibration) {
 }
 
 // The wide lens of the public sequences: its corners are more than 90 deg off the axis.
+TEST(TumMonoLayout, KeepsItsCalibrationNextToAnotherCamera) {
+  const TemporaryFolder folder;
+  testing::write_tum_mono(folder.path());
+  DatasetOptions options = options_of(folder.path());
+  options.camera = CameraModel(PinholeCamera{1280, 1024, 700, 700, 639.5, 511.5});
+  const Dataset dataset = opened(options);
+  EXPECT_EQ(dataset.camera.pinhole().fx_px, 700.0);
+  ASSERT_TRUE(dataset.own_camera.has_value());
+  EXPECT_NEAR(dataset.own_camera->pinhole().fx_px, 446.91584, 1e-9);
+  // A camera that is given replaces a calibration that cannot be read.
+  write_text(folder.path() / "camera.txt", "Omni 1 2 3\n");
+  EXPECT_FALSE(opened(options).own_camera.has_value());
+}
+
 TEST(TumMonoLayout, RefusesALensWhoseCornersSeeBackwards) {
   const TemporaryFolder folder;
   testing::write_tum_mono(folder.path());

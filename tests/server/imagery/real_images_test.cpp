@@ -95,6 +95,42 @@ TEST_F(RealImages, OfADamagedVideoAreReadAsFarAsTheyGo) {
   EXPECT_GT(read, 100);
 }
 
+TEST_F(RealImages, OfADataSetWithAnotherCalibrationCauseAWarning) {
+  for (const DatasetFormat format : {DatasetFormat::kPng,
+                                     DatasetFormat::kEuroc,
+                                     DatasetFormat::kTumMono,
+                                     DatasetFormat::kKitti}) {
+    fs::remove_all(folder_.path() / "export");
+    const fs::path folder = exported(format);
+    const auto warnings = [&](double fov_deg) {
+      Json document = twin_document({{"source", folder.string()}, {"clock", "first_image"}});
+      for (Json& camera : document["cameras"]) camera["fov_deg"] = fov_deg;
+      const Scenario scenario = scenario_of(document);
+      const auto images = FlightImages::open(scenario.cameras[0],
+                                             {std::nullopt, std::nullopt, 2 * kNsPerS},
+                                             scenario.sources,
+                                             nullptr);
+      if (!images) throw std::runtime_error(images.error().message);
+      return (*images)->warnings();
+    };
+    const auto differs = HasSubstr("contradicts the data set's own calibration");
+    EXPECT_THAT(warnings(kFovDeg), ::testing::Not(Contains(differs))) << to_string(format);
+    // The left and right edges see tan(23.5 deg) / tan(20 deg) = 1.195 times as far aside.
+    EXPECT_THAT(warnings(47.0), Contains(differs)) << to_string(format);
+  }
+}
+
+TEST_F(RealImages, OfADataSetWithAnotherCalibrationAreRecordedWithTheWarning) {
+  Json document = twin_document({{"source", exported(DatasetFormat::kPng).string()}});
+  for (Json& camera : document["cameras"]) camera["fov_deg"] = 47.0;
+  (void)flown(document);
+  const Json manifest = Json::parse(overfly::testing::read_text(run() / "manifest.json"));
+  const auto differs = HasSubstr("contradicts the data set's own calibration");
+  EXPECT_THAT(manifest.at("flight").at("warnings").get<std::vector<std::string>>(),
+              Contains(::testing::AllOf(::testing::StartsWith("images: "), differs)));
+  EXPECT_THAT(overfly::testing::read_text(run() / "log.jsonl"), differs);
+}
+
 TEST_F(RealImages, ShowAWrongTimeAsAnOffset) {
   const fs::path folder = exported(DatasetFormat::kPng);
   // Each image is placed half a second late: the aircraft flies 12.5 m on meanwhile, 300 m above
