@@ -297,6 +297,7 @@ describe('a camera calibrated on its page', { skip, timeout: 900_000 }, () => {
     await role('phase').filter({ hasText: 'Choose images' }).waitFor();
     assert.deepEqual(await getJson(stage.server, '/calibration-sessions'), { sessions: [] });
     await page.getByLabel('Delete front').click();
+    await page.getByLabel('Confirm the deletion of front').click();
     await page.locator('[data-calibration=front]').waitFor({ state: 'detached' });
   });
 

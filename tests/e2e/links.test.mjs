@@ -234,6 +234,34 @@ describe('links', { skip, timeout: 600_000 }, () => {
     });
   });
 
+  step('go back and forward through links without changing them', async () => {
+    const links = [
+      `#layout=camera&run=${kSlow}&t=1`,
+      `#layout=fly&run=${kFast}&t=2`,
+      `#layout=fly&run=${kSlow}&run=${kFast}&t=3`,
+    ];
+    const untilShown = async (link) => {
+      await dashboard.until((hash) => decodeURIComponent(location.hash) === hash, link);
+      await dashboard.until(
+        (t_ns) => Number(document.querySelector('[data-panel=timeline]').dataset.tNs) === t_ns,
+        Number(new URLSearchParams(link).get('t')) * 1e9,
+      );
+      // Longer than the page waits before it writes its address.
+      await page.waitForTimeout(1000);
+      assert.equal(decodeURIComponent(await page.evaluate(() => location.hash)), link);
+    };
+    for (const link of links) {
+      await page.evaluate((hash) => {
+        location.hash = hash;
+      }, link);
+      await untilShown(link);
+    }
+    for (const [by, place] of [[-1, 1], [-1, 0], [1, 1], [1, 2], [-2, 0]]) {
+      await page.evaluate((steps) => history.go(steps), by);
+      await untilShown(links[place]);
+    }
+  });
+
   step('hide each track of a single run', async () => {
     await page.goto('about:blank');
     await dashboard.open(`${stage.server.url}/#layout=compare&run=${kSlow}&t=3`);

@@ -286,6 +286,7 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
 
   step('deletes an uploaded log', async () => {
     await page.getByLabel('Delete uploads/circle.bin').click();
+    await page.getByLabel('Confirm the deletion of uploads/circle.bin').click();
     await choice(kLog).waitFor({ state: 'detached' });
     await message('Choose the truth');
   });

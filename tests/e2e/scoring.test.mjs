@@ -102,6 +102,7 @@ describe('trajectories scored on their page', { skip, timeout: 600_000 }, () => 
   step('deletes what was uploaded, and nothing else can be deleted', async () => {
     assert.equal(await page.locator('.score-groups button').count(), 1);
     await page.getByLabel('Delete shifted.tum').click();
+    await page.getByLabel('Confirm the deletion of shifted.tum').click();
     await choice('file:uploads/shifted.tum').waitFor({ state: 'detached' });
     await figure(kEstimate, 'sim3', 'position_rmse_m').waitFor();
   });

@@ -181,9 +181,12 @@ followAddress(context);
 window
   .matchMedia('(prefers-color-scheme: light)')
   .addEventListener('change', () => themes.refresh());
-document.addEventListener('visibilitychange', () =>
-  session.showPage(document.visibilityState === 'visible'),
-);
+document.addEventListener('visibilitychange', () => {
+  const shown = document.visibilityState === 'visible';
+  session.showPage(shown);
+  // Another tab may have saved one.
+  if (shown) void catalogue.readScenarios();
+});
 window.addEventListener('online', () => client.connect());
 client.connect();
 // A link shows its runs; the first visit shows the newest.

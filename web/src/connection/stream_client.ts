@@ -63,6 +63,9 @@ export interface StreamClientOptions {
 
 const kCloseTooSlow = 4000;
 
+/** Requests that change neither where the runs are nor the clock. */
+const kOfPictures: ReadonlySet<ClientMessage['type']> = new Set(['subscribe', 'key', 'view']);
+
 /** The name under which a stream's pictures arrive. */
 export function picturesOf(stream: string, camera?: string, view?: string): string {
   const camera_part = camera === undefined ? '' : `?camera=${camera}`;
@@ -77,6 +80,12 @@ export class StreamClient {
   private attempt = 0;
   private timer: number | null = null;
   private request = 0;
+  /** Number of the newest request that is answered; the server answers in their order. */
+  private answered = 0;
+  /** Number of the newest request about the runs and the clock; `playback` follows its answer. */
+  private placing = 0;
+  /** Number of the newest request whose result `playback` has shown. */
+  private placed = 0;
   /** The watched runs and their offsets [ns]. */
   private readonly runs = new Map<string, number>();
   /** The run of each unanswered `watch`, by the number of the request. */
@@ -90,6 +99,11 @@ export class StreamClient {
   private readonly labels = new Map<number, ServerMessage & { type: 'labels' }>();
 
   constructor(private readonly options: StreamClientOptions) {}
+
+  /** Whether the server has said what came of every request about the runs and the clock. */
+  get settled(): boolean {
+    return this.placed >= this.placing;
+  }
 
   /** Connects; if a retry is pending, tries immediately. */
   connect(): void {
@@ -179,6 +193,7 @@ export class StreamClient {
   private send(message: ClientMessage): void {
     if (this.socket === null || !this.greeted) return;
     this.request += 1;
+    if (!kOfPictures.has(message.type)) this.placing = this.request;
     this.socket.send(JSON.stringify({ ...message, request: this.request }));
   }
 
@@ -217,6 +232,7 @@ export class StreamClient {
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else if (this.concerns(message)) {
+      if (message.type === 'playback') this.placed = this.answered;
       this.options.listener.onMessage(message);
     }
   }
@@ -233,8 +249,13 @@ export class StreamClient {
 
   private onAnswer(message: ServerMessage & { type: 'ok' | 'error' }): void {
     const opened = message.request === undefined ? undefined : this.opening.get(message.request);
-    if (message.request !== undefined) this.opening.delete(message.request);
+    if (message.request !== undefined) {
+      this.opening.delete(message.request);
+      this.answered = message.request;
+    }
     if (message.type === 'ok') return;
+    // What is refused changes nothing: no `playback` follows.
+    this.placed = this.answered;
     if (opened !== undefined && this.runs.delete(opened)) {
       this.options.listener.onWatchFailed(opened, message.message);
     } else {
@@ -290,6 +311,7 @@ export class StreamClient {
     const socket = this.socket;
     this.socket = null;
     this.greeted = false;
+    this.answered = this.request;
     this.opening.clear();
     this.streams.clear();
     this.labels.clear();

@@ -225,6 +225,7 @@ export class Catalogue {
       state.runs = withNewer(listed, before, now);
       state.listError = null;
       for (const run of listed) this.takeListed(run);
+      this.announceDeleted(before, listed);
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
       state.listError = errorText(error);
@@ -254,6 +255,20 @@ export class Catalogue {
       if (run.status === 'failed') {
         this.notices.error(`${name}: the flight failed. ${run.error ?? ''}`.trim());
       }
+    }
+  }
+
+  /** Says which watched runs somebody else deleted; runs of sweeps and studies are in no list. */
+  private announceDeleted(before: readonly Run[], now: readonly Run[]): void {
+    for (const run of before) {
+      const watched = this.store.state.watchedRun(run.id);
+      if (watched === undefined || now.some(({ id }) => id === run.id)) continue;
+      watched.deleted = true;
+      const name = run.title || run.scenario;
+      this.notices.error(
+        `${name} (${run.id}) was deleted from the server. It is shown as far as it was read.`,
+      );
+      this.store.change('run');
     }
   }
 

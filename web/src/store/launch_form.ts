@@ -176,6 +176,12 @@ export const kFields: readonly FieldSpec[] = [
   },
 ];
 
+/** Has the fields of the scenario that is shown first. */
+export const kUsualScenario: JsonObject = {
+  world: { builtin: {} },
+  flight: { course: {} },
+};
+
 export function fieldsOf(document: JsonObject): FieldSpec[] {
   return kFields.filter(
     ({ needs }) => needs === undefined || valueIn(document, needs) !== undefined,

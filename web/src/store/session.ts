@@ -52,6 +52,11 @@ export class Session implements StreamListener {
     this.client = client;
   }
 
+  /** Whether runs and clock are where the viewer wants them. */
+  get settled(): boolean {
+    return this.pending === null && this.client?.settled !== false;
+  }
+
   // ---- commands of the viewer ------------------------------------------------------------------
 
   /** Shows a run: one that is watched already becomes the main one, another replaces all. */
@@ -61,7 +66,7 @@ export class Session implements StreamListener {
   }
 
   /**
-   * Shows exactly these runs.
+   * Shows exactly these runs, in this order.
    * @param main  null = the first
    * @param t_ns  of the clock; null = where it is, or the server's default position
    * @param settings  of the clock; null = as they are
@@ -73,9 +78,8 @@ export class Session implements StreamListener {
     settings: ClockSettings | null = null,
   ): void {
     const { state } = this;
-    for (const { id } of [...state.watched]) {
-      if (!runs.some((run) => run.id === id)) this.leave(id);
-    }
+    const left = state.watched.filter(({ id }) => !runs.some((run) => run.id === id));
+    for (const { id } of left) this.leave(id);
     if (state.watched.length === 0) {
       state.clock = null;
       state.wantedSpeed = null;
@@ -85,15 +89,16 @@ export class Session implements StreamListener {
     const added = runs.filter(({ id }) => state.watchedRun(id) === undefined);
     for (const { id, offset_ns } of runs) this.setOffset(id, offset_ns);
     for (const { id, offset_ns } of added) this.watch(id, offset_ns);
+    state.watched = runs.flatMap(({ id }) => state.watchedRun(id) ?? []);
     state.main = (main === null ? undefined : state.watchedRun(main)) ?? state.watched[0] ?? null;
     this.setClock(t_ns, settings, added.length > 0);
     this.subscribe();
     this.changedRuns();
   }
 
-  /** Waits if runs were added: before they are there, the time would be limited to the others. */
+  /** Waits for a connection, and for added runs: without them the time is limited to the others. */
   private setClock(t_ns: number | null, settings: ClockSettings | null, added: boolean): void {
-    if (added || this.pending !== null) {
+    if (added || this.pending !== null || this.state.connection.status !== 'open') {
       const before = this.pending ?? { t_ns: null, settings: null };
       this.pending = { t_ns: t_ns ?? before.t_ns, settings: settings ?? before.settings };
       return;
@@ -247,12 +252,9 @@ export class Session implements StreamListener {
   restore(): ClientMessage[] {
     const { clock, watched } = this.state;
     if (clock === null) return [];
-    const commands: ClientMessage[] = [];
-    for (const one of watched) {
-      if (one.aligned !== null) {
-        commands.push({ type: 'align', run: one.id, mode: shownAlignment(one) });
-      }
-    }
+    const commands = watched
+      .filter(({ aligned }) => aligned !== null)
+      .map((one): ClientMessage => ({ type: 'align', run: one.id, mode: shownAlignment(one) }));
     if (clock.live) this.livePlace_ns = clock.t_ns;
     return [...commands, ...restoringCommands(clock)];
   }

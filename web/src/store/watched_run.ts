@@ -1,6 +1,7 @@
 // One of the runs shown together: what the server sent about it, and how it is shown.
 import type { RunInstant, SceneLabel, SeriesInfo } from '../protocol/messages';
 import type { CameraInfo, EstimatorStatus, Metrics, Run } from '../protocol/rest_types';
+import { isActive } from '../protocol/rest_types';
 import type { ColourScale } from './pictures/colour_scale';
 import type { PictureRate } from './pictures/picture_rates';
 import { PictureMeter } from './pictures/picture_rates';
@@ -36,6 +37,8 @@ export interface AlignedEstimates {
 export class WatchedRun {
   /** null until the list or the stream has sent it. */
   run: Run | null = null;
+  /** It is no longer on the server; what has come of it is still shown. */
+  deleted = false;
   readonly data = new RunData();
   metrics: Metrics | null = null;
   /** Status of its estimators, by name. */
@@ -67,6 +70,17 @@ export class WatchedRun {
   /** Rows of an estimate under the shown alignment. */
   shownEstimate(name: string): EstimateRows | undefined {
     return this.aligned === null ? this.data.estimates.get(name) : this.aligned.estimates.get(name);
+  }
+
+  /** Whether all rows have come of a flight that is over; of one that is flown, those so far. */
+  get isRead(): boolean {
+    const { run, instant, data, statuses } = this;
+    if (run === null || instant === null) return false;
+    // The server sends the frames, then the estimates, then the log.
+    const answers = Object.entries(statuses).every(
+      ([name, { answered }]) => (data.estimates.get(name)?.table.length ?? 0) >= answered,
+    );
+    return isActive(run) || (data.truth.length >= run.frames && answers);
   }
 
   /** Seconds of the clock at its beginning. */

@@ -116,8 +116,9 @@ export class HeaderBar implements View {
     this.title.title = run === null ? '' : `${run.id} · scenario ${run.scenario} · ${run.pacing}`;
     const share = run === null || run.frames_total === 0 ? 0 : run.frames / run.frames_total;
     const running = run?.status === 'running' ? ` ${formatPercent(share, 0)}` : '';
-    setText(this.status, run === null ? '' : `${run.status}${running}`);
-    setAttribute(this.status, 'data-status', run?.status ?? null);
+    const deleted = state.main?.deleted === true;
+    setText(this.status, run === null ? '' : deleted ? 'deleted' : `${run.status}${running}`);
+    setAttribute(this.status, 'data-status', deleted ? 'deleted' : (run?.status ?? null));
     setText(this.error, run?.error ?? '');
     this.error.title = run?.error ?? '';
     setText(this.attribution, run?.attribution ?? '');

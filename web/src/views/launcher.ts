@@ -1,7 +1,7 @@
 // Selects a scenario, changes what is changed most often, starts a run.
 import type { JsonObject, Run } from '../protocol/rest_types';
 import { formatDate } from '../store/format';
-import { fieldOfError, fieldsOf, fieldText } from '../store/launch_form';
+import { fieldOfError, fieldsOf, fieldText, kUsualScenario } from '../store/launch_form';
 import type { FieldSpec } from '../store/launch_form';
 import { draftOf } from '../store/scenario/draft';
 import type { Topic } from '../store/state';
@@ -65,6 +65,7 @@ export class Launcher implements View {
       this.errors,
       h('div', { class: 'launch-buttons' }, this.button, this.editor, this.studyButtons()),
     );
+    this.keepRoom();
     this.editor.addEventListener('click', () => void context.scenarios.openEditor());
     panel.body.append(form);
     panel.tools.append(
@@ -161,6 +162,14 @@ export class Launcher implements View {
     this.description.title = description ?? '';
   }
 
+  /** For the fields, before the scenario is read: the buttons below do not jump. */
+  private keepRoom(): void {
+    const fields = fieldsOf(kUsualScenario).map((spec) => makeField(spec, () => undefined));
+    for (const { fill } of fields) fill('');
+    this.fieldArea.append(...fields.map(({ row }) => row));
+    this.fieldArea.style.visibility = 'hidden';
+  }
+
   private buildFields(): void {
     const document = this.context.store.state.scenarioDocument;
     this.documentShown = document;
@@ -175,6 +184,7 @@ export class Launcher implements View {
         makeField(spec, (text) => scenarios.setField(spec, text)),
       );
       this.fieldArea.replaceChildren(...this.fields.flatMap(({ row, error }) => [row, error]));
+      this.fieldArea.style.visibility = '';
     }
   }
 

@@ -233,6 +233,32 @@ describe('Catalogue', () => {
     expect(store.take().has('run')).toBe(false);
   });
 
+  it('says once that somebody deleted a shown run, and not that of a run of a sweep', async () => {
+    let runs = [sampleRun(), sampleRun({ id: 'r2' })];
+    const { store, session, subject } = catalogue({
+      'GET /runs': () => [200, { runs }],
+      'DELETE /runs/r2': () => [204, null],
+    });
+    await subject.readRuns();
+    session.showRuns(
+      ['r1', 'sweep.0123', 'r2'].map((id) => ({ id, offset_ns: 0 })),
+      null,
+      null,
+    );
+    runs = [sampleRun({ id: 'r2' })];
+    await subject.readRuns();
+    runs = [];
+    await subject.remove('r2');
+    await subject.readRuns();
+    expect(store.state.notices.map(({ text }) => text)).toEqual([
+      'The course (r1) was deleted from the server. It is shown as far as it was read.',
+    ]);
+    expect(store.state.watched.map(({ id, deleted }) => [id, deleted])).toEqual([
+      ['r1', true],
+      ['sweep.0123', false],
+    ]);
+  });
+
   it('says that a flight of this page ended that no list has shown before', async () => {
     const { store, subject } = catalogue({
       ...reading,

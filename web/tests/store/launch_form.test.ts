@@ -1,9 +1,11 @@
 import { describe, expect, it } from 'vitest';
+import courseText from '../../../scenarios/course.json?raw';
 import type { JsonObject } from '../../src/protocol/rest_types';
 import {
   fieldOfError,
   fieldsOf,
   fieldText,
+  kUsualScenario,
   withFieldText,
   withOverrides,
 } from '../../src/store/launch_form';
@@ -28,6 +30,10 @@ function typed(document: JsonObject, changes: Record<string, string>): JsonObjec
 }
 
 describe('the launcher', () => {
+  it('keeps room for the fields of the scenario that is shown first', () => {
+    expect(fieldsOf(kUsualScenario)).toEqual(fieldsOf(JSON.parse(courseText) as JsonObject));
+  });
+
   it('changes nothing while nothing else is typed', () => {
     const texts = fieldsOf(course).map((field) => [field.path, fieldText(course, field)] as const);
     expect(typed(course, Object.fromEntries(texts))).toBe(course);

@@ -332,7 +332,7 @@ describe('Session', () => {
       null,
     );
     const { state } = viewing.store;
-    expect(state.watched.map(({ id }) => id)).toEqual(['r1', 'r3']);
+    expect(state.watched.map(({ id }) => id)).toEqual(['r3', 'r1']);
     expect(state.runId).toBe('r1');
     expect(state.data.truth.length).toBe(63);
     expect(state.offset_ns).toBe(1e9);

@@ -8,6 +8,7 @@ import type { Zoom } from '../pictures/picture_zoom';
 import { isZoom, kWholePicture } from '../pictures/picture_zoom';
 import { kSpeeds } from '../playback/player';
 import type { Span } from '../playback/time_window';
+import { kPlotGroupNames } from '../plots/plot_group_names';
 
 export interface LinkChoices {
   alignment: string;
@@ -78,7 +79,7 @@ export function readChoices(fields: URLSearchParams, problems: string[]): LinkCh
   return {
     alignment: read('align', word) ?? usual.alignment,
     compared: read('compare', word),
-    plotGroup: read('plots', word),
+    plotGroup: read('plots', plotGroupOf),
     window_s: read('window', secondsPair),
     clock: {
       range: range === null ? null : rangeOf(range),
@@ -120,6 +121,10 @@ export function nameOf(text: string): string | null {
 
 function word(text: string): string | null {
   return /^[a-z0-9_]{1,40}$/.test(text) ? text : null;
+}
+
+function plotGroupOf(text: string): string | null {
+  return kPlotGroupNames.find((name) => name === text) ?? null;
 }
 
 function secondsPair(text: string): Span | null {

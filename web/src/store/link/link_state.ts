@@ -22,11 +22,15 @@ export interface Linked {
   notices: Notices;
 }
 
-/** null while the server has not sent where the runs are. */
-export function linkOf({ store, layouts }: Pick<Linked, 'store' | 'layouts'>): Permalink | null {
+/** null while the server has not sent where the runs are, as they were asked for. */
+export function linkOf({
+  store,
+  layouts,
+  session,
+}: Pick<Linked, 'store' | 'layouts' | 'session'>): Permalink | null {
   const { state } = store;
   const { watched, runId, clock, scene, sideBySide, studyPage } = state;
-  if (runId !== null && clock === null) return null;
+  if (runId !== null && (clock === null || !session.settled)) return null;
   const { name, tree } = layouts.shared;
   return {
     runs: watched.map(({ id, offset_ns, hidden, camera }) => {

@@ -1,5 +1,6 @@
 // Repeated flights: how the errors of each estimator are distributed over them.
 import type { Run } from '../../protocol/rest_types';
+import { countedResults } from './counted_results';
 import { knownTags } from './run_tags';
 
 /** Which runs are compared: those that fly as the main run does, all of them, or those of a tag. */
@@ -58,9 +59,11 @@ export function repeatedRuns(runs: readonly Run[], choice: string, main: Run | n
   );
 }
 
-/** By estimator, in alphabetical order. */
+/** Of the completed runs, by estimator in alphabetical order. */
 export function repeatsOf(runs: readonly Run[]): Repeats[] {
-  const results = runs.flatMap((run) => run.results.map((result) => ({ run: run.id, result })));
+  const results = runs.flatMap((run) =>
+    countedResults(run).map((result) => ({ run: run.id, result })),
+  );
   const names = [...new Set(results.map(({ result }) => result.estimator))];
   return names
     .sort((a, b) => a.localeCompare(b))

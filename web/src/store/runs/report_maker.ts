@@ -1,9 +1,9 @@
 // Lets the server write the report of the runs that are shown together.
 import { errorText } from '../../connection/rest_error';
-import type { Run } from '../../protocol/rest_types';
 import { isActive } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
 import type { Store } from '../state';
+import type { WatchedRun } from '../watched_run';
 
 export interface ReportRest {
   report: (runs: readonly string[], alignment: string) => Promise<Blob>;
@@ -27,9 +27,9 @@ export class ReportMaker {
     return this.making;
   }
 
-  /** Ids of the shown runs that are over. */
+  /** Ids of the shown runs that are over and still on the server. */
   runs(): string[] {
-    const over = ({ run }: { run: Run | null }) => run !== null && !isActive(run);
+    const over = ({ run, deleted }: WatchedRun) => run !== null && !isActive(run) && !deleted;
     return this.store.state.watched.filter(over).map(({ id }) => id);
   }
 
@@ -57,7 +57,7 @@ export class ReportMaker {
   private refusal(runs: readonly string[]): string | null {
     if (this.making) return 'A report is being made already.';
     return runs.length === 0
-      ? 'None of the shown runs has ended: only ended runs can be reported.'
+      ? 'None of the shown runs has ended and is on the server: only such runs can be reported.'
       : null;
   }
 

@@ -1,5 +1,6 @@
 // Filters a list of runs by what the runs in it have.
 import type { Run } from '../../protocol/rest_types';
+import { countedResults } from './counted_results';
 import { knownTags } from './run_tags';
 
 /** '' = any. */
@@ -50,10 +51,11 @@ export function filterChoices(runs: readonly Run[]): Record<FilterField, FilterC
   };
 }
 
-function outcomesOf({ status, results }: Run, estimator: string): string[] {
-  const own = results.filter((one) => estimator === '' || one.estimator === estimator);
-  const outcomes = own.map(({ outcome }) => outcome);
-  return status === 'completed' ? outcomes : [...outcomes, status];
+function outcomesOf(run: Run, estimator: string): string[] {
+  if (run.status !== 'completed') return [run.status];
+  return countedResults(run)
+    .filter((one) => estimator === '' || one.estimator === estimator)
+    .map(({ outcome }) => outcome);
 }
 
 function counted(values: readonly (readonly string[])[]): FilterChoice[] {

@@ -1,5 +1,6 @@
 // The order of a list of runs.
 import type { EstimatorResult, Run } from '../../protocol/rest_types';
+import { countedResults } from './counted_results';
 
 export const kRunOrders = {
   newest: 'Newest',
@@ -14,9 +15,9 @@ export function isRunOrder(text: string): text is RunOrder {
   return Object.hasOwn(kRunOrders, text);
 }
 
-/** The smallest position error of a run's estimators [m]; null if none has one. */
+/** The smallest position error of a completed run's estimators [m]; null if none has one. */
 export function leastError_m(run: Run): number | null {
-  const errors = run.results.flatMap(({ position_rmse_m }) => position_rmse_m ?? []);
+  const errors = countedResults(run).flatMap(({ position_rmse_m }) => position_rmse_m ?? []);
   return errors.length > 0 ? Math.min(...errors) : null;
 }
 

@@ -1,5 +1,6 @@
 // Finds runs by words and by fields: "hills seed:3 outcome:lost".
 import type { Run } from '../../protocol/rest_types';
+import { countedResults } from './counted_results';
 
 /** Fields that a word with a colon searches alone. */
 const kFields: Readonly<Record<string, (run: Run) => string[]>> = {
@@ -8,7 +9,7 @@ const kFields: Readonly<Record<string, (run: Run) => string[]>> = {
   scenario: ({ scenario }) => [scenario],
   flight: ({ flight }) => [flight],
   estimator: ({ estimators }) => estimators,
-  outcome: ({ results }) => results.map(({ outcome }) => outcome),
+  outcome: outcomesOf,
   status: ({ status }) => [status],
   tag: ({ tags }) => tags,
   note: ({ note }) => [note],
@@ -59,10 +60,14 @@ function testOf({ field, value }: Term): Test {
   return (run) => textsOf(run).some((text) => text.toLowerCase().includes(value));
 }
 
-function allTexts({ texture_limited, estimators, results, tags, ...run }: Run): string {
+function outcomesOf(run: Run): string[] {
+  return countedResults(run).map(({ outcome }) => outcome);
+}
+
+function allTexts(run: Run): string {
+  const { texture_limited, estimators, tags } = run;
   const limited = texture_limited ? 'texture-limited' : '';
   const { id, title, scenario, flight, status, pacing, note, seed } = run;
-  const outcomes = results.map(({ outcome }) => outcome);
   const own = [id, title, scenario, flight, `seed ${seed}`, status, pacing, limited, note];
-  return [...own, ...estimators, ...outcomes, ...tags].join(' ').toLowerCase();
+  return [...own, ...estimators, ...outcomesOf(run), ...tags].join(' ').toLowerCase();
 }

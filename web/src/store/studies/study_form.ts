@@ -6,6 +6,7 @@ import type { FieldError } from '../../protocol/field_errors';
 import type { Json, JsonObject, Run } from '../../protocol/rest_types';
 import type { StudyKind } from '../../protocol/study_types';
 import { withOverrides } from '../launch_form';
+import { countedResults } from '../runs/counted_results';
 import type { Store } from '../state';
 import type { HuntField } from './hunt_fields';
 import { huntFieldsOf } from './hunt_fields';
@@ -181,6 +182,13 @@ export class StudyForm {
     return extraRun === null ? listed : [extraRun, ...listed];
   }
 
+  /** Whether there is something to be studied. */
+  canStart(form: StudyFormState): boolean {
+    if (form.starting) return false;
+    if (form.kind !== 'explain') return form.document !== null;
+    return this.runsOf(form).some(({ id }) => id === form.run);
+  }
+
   /** @return whether the server makes it */
   async start(): Promise<boolean> {
     const { form } = this;
@@ -266,9 +274,10 @@ export class StudyForm {
 }
 
 /** The estimators that a completed run has lost; none before it is scored. */
-export function failedEstimators({ status, results }: Run): string[] {
-  if (status !== 'completed') return [];
-  return results.filter(({ outcome }) => outcome !== 'COMPLETED').map(({ estimator }) => estimator);
+export function failedEstimators(run: Run): string[] {
+  return countedResults(run)
+    .filter(({ outcome }) => outcome !== 'COMPLETED')
+    .map(({ estimator }) => estimator);
 }
 
 export function plainScenario(name: string): StudyScenario {

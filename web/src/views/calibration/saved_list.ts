@@ -2,9 +2,9 @@
 import { formatNumber } from '../../store/format';
 import type { SavedCalibration } from '../../protocol/calibration_types';
 import { kCameraFormats } from '../../protocol/calibration_types';
+import { deleteButton } from '../delete_button';
 import { h, rebuild, setText } from '../dom';
 import { download } from '../download';
-import { icon } from '../icons';
 import type { Context } from '../view';
 
 const kFormats: Readonly<Record<(typeof kCameraFormats)[number], string>> = {
@@ -80,16 +80,7 @@ export class SavedList {
           'Use in next flight',
         ),
         choice,
-        h(
-          'button',
-          {
-            class: 'icon-button',
-            title: 'Delete',
-            'aria-label': `Delete ${name}`,
-            onclick: () => void calibration.remove(name),
-          },
-          icon('bin'),
-        ),
+        deleteButton(name, 'this calibration', () => void calibration.remove(name)),
       ),
     );
   }

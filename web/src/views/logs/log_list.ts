@@ -1,5 +1,6 @@
 // The logs of the server, and the upload of another one.
 import type { LogEntry } from '../../protocol/log_types';
+import { deleteButton } from '../delete_button';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
 
@@ -110,16 +111,7 @@ export class LogListView {
     );
     if (entry.uploaded) {
       row.append(
-        h(
-          'button',
-          {
-            class: 'icon-button',
-            title: 'Delete this upload',
-            'aria-label': `Delete ${entry.name}`,
-            onclick: () => void this.context.logs.remove(entry.name),
-          },
-          '×',
-        ),
+        deleteButton(entry.name, 'this upload', () => void this.context.logs.remove(entry.name)),
       );
     }
     return row;

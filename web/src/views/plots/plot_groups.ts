@@ -1,4 +1,5 @@
 // The groups of plots that a panel offers.
+import type { PlotGroupName } from '../../store/plots/plot_group_names';
 import type { PlotGroup } from '../../store/plots/plot_specs';
 
 export const kGroups = [
@@ -11,8 +12,8 @@ export const kGroups = [
   { name: 'sensors', label: 'Sensors', hint: 'IMU, GPS, air data, magnetometer, rangefinder' },
   { name: 'vehicle', label: 'Vehicle', hint: 'Battery, satellites and link of a live vehicle' },
   { name: 'estimators', label: 'Status', hint: 'State, drops, latency, CPU, memory, log' },
-] as const;
-export type Group = (typeof kGroups)[number]['name'];
+] as const satisfies readonly { name: PlotGroupName; label: string; hint: string }[];
+export type Group = PlotGroupName;
 
 /** Groups that depend on the alignment of the estimates. */
 export const kByAlignment: readonly Group[] = ['pose', 'path', 'errors', 'drift'];

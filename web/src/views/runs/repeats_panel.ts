@@ -1,6 +1,7 @@
 // Errors of each estimator over repeated flights: box plot, histogram, and the single flights.
 import { formatNumber } from '../../store/format';
 import type { ErrorAxis } from '../../store/runs/error_axis';
+import { notCounted } from '../../store/runs/counted_results';
 import { axisTicks, errorAxis, histogram, placeOn } from '../../store/runs/error_axis';
 import type { Repeats } from '../../store/runs/repeats';
 import { kSameFlight, repeatChoices, repeatedRuns, repeatsOf } from '../../store/runs/repeats';
@@ -8,7 +9,7 @@ import { repeatsCsv } from '../../store/runs/repeats_csv';
 import { svgFile } from '../../store/plots/svg_pen';
 import type { State, Topic } from '../../store/state';
 import { estimateColour } from '../colours';
-import { h, rebuild } from '../dom';
+import { h, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
 import { paint } from '../paint';
@@ -35,6 +36,7 @@ export class RepeatsPanel implements View {
     title: 'Runs whose position RMSE, alignment init_scale, is compared',
   });
   private readonly drawing = h('div', { class: 'repeats' });
+  private readonly rest = h('p', { class: 'hint', 'data-role': 'repeats-not-counted' });
   private repeats: readonly Repeats[] = [];
 
   constructor(private readonly context: Context) {
@@ -46,7 +48,7 @@ export class RepeatsPanel implements View {
         (text) => context.notices.error(text),
       ),
     );
-    this.panel.body.append(this.drawing);
+    this.panel.body.append(this.drawing, this.rest);
     this.root = this.panel.root;
     const draw = () => this.draw(context.store.state);
     this.choice.addEventListener('change', draw);
@@ -73,7 +75,10 @@ export class RepeatsPanel implements View {
     rebuild(this.drawing, JSON.stringify([repeats, width_px, state.run?.estimators]), () =>
       repeats.length === 0 ? [] : [this.picture(repeats, width_px, state.run?.estimators ?? [])],
     );
-    this.panel.showEmpty(repeats.length > 0 ? null : 'None of these runs is scored.');
+    const rest = notCounted(compared).map(([status, count]) => `${count} ${status}`);
+    setText(this.rest, rest.length === 0 ? '' : `Not counted: ${rest.join(', ')}`);
+    this.rest.hidden = rest.length === 0;
+    this.panel.showEmpty(repeats.length > 0 ? null : 'None of these runs is completed and scored.');
   }
 
   private file(): PlotFile | null {

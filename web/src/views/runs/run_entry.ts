@@ -234,7 +234,7 @@ function detailText(run: Run): string {
   return [
     formatDate(run.created_utc),
     length,
-    run.results.length > 0 ? resultsText(run) : run.estimators.join(', ') || 'no estimators',
+    hasFlown(run) ? resultsText(run) : run.estimators.join(', ') || 'no estimators',
     progressText(run),
   ]
     .filter((part) => part !== '')
@@ -255,6 +255,11 @@ function progressText(run: Run): string {
   return run.left_s === null ? '' : `${formatDuration(run.left_s)} left`;
 }
 
+/** Whether its results are of anything. */
+function hasFlown({ results, frames }: Run): boolean {
+  return results.length > 0 && frames > 0;
+}
+
 /** The best estimators with their errors. */
 function resultsText({ results }: Run): string {
   const best = bestFirst(results);
@@ -263,8 +268,8 @@ function resultsText({ results }: Run): string {
 }
 
 /** All of them, one a line; undefined before the run is scored. */
-function resultsHint({ results }: Run): string | undefined {
-  return results.length > 0 ? bestFirst(results).map(resultText).join('\n') : undefined;
+function resultsHint(run: Run): string | undefined {
+  return hasFlown(run) ? bestFirst(run.results).map(resultText).join('\n') : undefined;
 }
 
 /** So that an error has at least two figures. */

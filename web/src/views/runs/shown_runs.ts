@@ -33,7 +33,9 @@ export class ShownRuns {
     const tracks = tracksOf(state);
     const drawn = tracks.map(({ label, shown, chosen }) => [label, shown, chosen]);
     const names = distinguishingNames(watched.flatMap(({ run }) => run ?? []));
-    const runs = watched.map(({ id }) => [id, names.get(id)]);
+    const nameOf = ({ id, deleted }: WatchedRun) =>
+      `${names.get(id) ?? id}${deleted ? ' (deleted)' : ''}`;
+    const runs = watched.map((one) => [one.id, nameOf(one)]);
     const single = watched.length < 2;
     rebuild(this.root, JSON.stringify([drawn, runs, runId]), () =>
       single
@@ -41,7 +43,7 @@ export class ShownRuns {
         : watched.map((one) =>
             this.entry(
               one,
-              names.get(one.id) ?? one.id,
+              nameOf(one),
               runLetter(state, one),
               tracks.filter(({ run }) => run === one),
             ),

@@ -1,8 +1,8 @@
 // The list of trajectories: one is the truth, the others may be ticked. Files can be dropped on it.
 import type { TrajectoryChoice } from '../../store/scoring/score_desk';
 import { choiceGroups } from '../../store/scoring/score_desk';
+import { deleteButton } from '../delete_button';
 import { h, rebuild, setText } from '../dom';
-import { icon } from '../icons';
 import type { Context } from '../view';
 
 export class ScoreChoices {
@@ -82,16 +82,6 @@ export class ScoreChoices {
     const { scores, store } = this.context;
     const { truth, estimates } = store.state.scorePage;
     const { name, label, detail, uploaded } = choice;
-    const remove = h(
-      'button',
-      {
-        class: 'icon-button',
-        title: 'Delete this file',
-        'aria-label': `Delete ${label}`,
-        onclick: () => void scores.remove(name),
-      },
-      icon('bin'),
-    );
     const radio = h('input', {
       type: 'radio',
       name: 'score-truth',
@@ -112,7 +102,7 @@ export class ScoreChoices {
       box,
       h('span', { class: 'score-label', title: name }, label),
       h('span', { class: 'unit' }, detail),
-      uploaded ? remove : null,
+      uploaded ? deleteButton(label, 'this file', () => void scores.remove(name)) : null,
     );
   }
 }

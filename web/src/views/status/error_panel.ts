@@ -4,6 +4,8 @@ import { exportErrors } from '../../store/errors/error_export';
 import type { TextFormat } from '../../store/table_text';
 import { kTextFormats } from '../../store/table_text';
 import type { ErrorRow, ErrorTable } from '../../store/errors/error_table';
+import type { RunOutcome } from '../../store/errors/run_outcome';
+import { kReading, runOutcome } from '../../store/errors/run_outcome';
 import {
   alignmentModes,
   allMetrics,
@@ -42,6 +44,8 @@ export class ErrorPanel implements View {
   );
   private readonly compared = h('select', { id: 'compared' });
   private readonly table = h('table', { class: 'errors' });
+  /** The outcome of a run is still on its way. */
+  private reading = false;
 
   constructor(private readonly context: Context) {
     this.panel = makePanel('errors', 'Errors');
@@ -65,7 +69,8 @@ export class ErrorPanel implements View {
 
   update(changed: ReadonlySet<Topic>): void {
     const { state } = this.context.store;
-    if (changed.has('metrics') || changed.has('run')) {
+    const read = this.reading && changed.has('playback');
+    if (changed.has('metrics') || changed.has('run') || read) {
       this.drawModes(state);
       this.draw(state);
     }
@@ -123,14 +128,19 @@ export class ErrorPanel implements View {
     const scored = state.watched.some(({ metrics }) => metrics?.estimators !== undefined);
     this.copy.disabled = !scored;
     this.table.classList.toggle('many', tracks.length > 2);
+    const outcomes = table.estimators.flatMap((one, i) => {
+      const run = tracks[i]?.run;
+      return run === undefined ? [] : [runOutcome(run, one)];
+    });
+    this.reading = outcomes.some(({ text }) => text === kReading);
     const textures = modes.flatMap(() => state.watched.map(textureOf));
-    rebuild(this.table, JSON.stringify([table, tracks.map(headOf), textures]), () => [
+    rebuild(this.table, JSON.stringify([table, tracks.map(headOf), textures, outcomes]), () => [
       h('thead', {}, headRow(tracks)),
       h(
         'tbody',
         {},
         stateRow(tracks),
-        this.outcomeRow(table, tracks),
+        this.outcomeRow(outcomes, tracks),
         ...table.rows.map(({ cells, cellHints, bad, ...row }) =>
           tableRow(
             row,
@@ -144,7 +154,7 @@ export class ErrorPanel implements View {
     this.drawStates(state);
   }
 
-  private outcomeRow(table: ErrorTable, tracks: readonly Track[]): HTMLElement {
+  private outcomeRow(outcomes: readonly RunOutcome[], tracks: readonly Track[]): HTMLElement {
     const row = {
       key: 'outcome',
       label: 'Outcome',
@@ -153,16 +163,16 @@ export class ErrorPanel implements View {
     };
     return tableRow(
       row,
-      table.estimators.map(({ name, outcome, good }, i) => {
-        if (outcome === kNothing) return h('td', { class: 'pending' }, 'not scored yet');
-        const run = tracks[i]?.run.run ?? null;
+      outcomes.map(({ text, good }, i) => {
+        if (good === null) return h('td', { class: 'pending', title: text }, text);
+        const track = tracks[i];
+        const run = track?.run.run ?? null;
+        const unexplained = good || run === null || track?.by !== undefined;
         return h(
           'td',
-          { class: good ? 'good' : 'bad', title: outcome },
-          outcome,
-          good || run === null || tracks[i]?.by !== undefined
-            ? null
-            : this.explainButton(run, name),
+          { class: good ? 'good' : 'bad', title: text },
+          text,
+          unexplained ? null : this.explainButton(run, track?.name ?? ''),
         );
       }),
     );

@@ -17,6 +17,8 @@ export class LogPanel implements View {
   private data: RunData | null = null;
   private generation = 0;
   private shown = 0;
+  /** The rows of the run are still on their way. */
+  private reading = false;
   /** The newest line is kept in view. */
   private atEnd = true;
 
@@ -33,8 +35,9 @@ export class LogPanel implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (!changed.has('log') && !changed.has('run')) return;
-    const { data } = this.context.store.state;
+    const read = this.reading && (changed.has('rows') || changed.has('playback'));
+    if (!changed.has('log') && !changed.has('run') && !read) return;
+    const { data, main } = this.context.store.state;
     if (data !== this.data || data.generation !== this.generation) {
       this.data = data;
       this.generation = data.generation;
@@ -50,7 +53,9 @@ export class LogPanel implements View {
     this.shown = data.log.length;
     while (this.list.children.length > kMostLines) this.list.firstElementChild?.remove();
     this.scroll();
-    this.panel.showEmpty(data.log.length === 0 ? 'Nothing logged.' : null);
+    this.reading = main !== null && data.log.length === 0 && !main.isRead;
+    const none = this.reading ? 'Reading the log' : 'Nothing logged.';
+    this.panel.showEmpty(data.log.length === 0 ? none : null);
   }
 
   private scroll(): void {

@@ -87,7 +87,7 @@ export class StudyFormView {
     );
     this.drawErrors(form);
     setText(this.start, form.starting ? 'Starting' : 'Start');
-    this.start.disabled = form.starting || (kind === 'explain' ? run === '' : document === null);
+    this.start.disabled = !this.context.studies.form.canStart(form);
   }
 
   private fieldsOf(form: StudyFormState, limits: StudyLimits | null): HTMLElement[] {

@@ -143,21 +143,10 @@ export class SweepHead {
     }, kConfirm_ms);
   }
 
-  private drawProgress({ sweep, table }: SweepState): void {
+  private drawProgress(shown: SweepState): void {
+    const { sweep } = shown;
     const { progress, problem } = sweep;
-    const texts: string[] = [];
-    if (progress !== null) {
-      const { passed, most } = progress;
-      texts.push(passed < most ? `${passed} of ${most} flights` : `${most} flights`);
-      if (sweep.flying && progress.left_s !== null && progress.left_s > 0) {
-        texts.push(`about ${formatDuration(progress.left_s)} left`);
-      }
-      if (progress.spent_s > 0) texts.push(`${formatDuration(progress.spent_s)} flown`);
-    }
-    if (sweep.flying && sweep.here === null) texts.push('flown by another process');
-    if (table !== null && table.failed > 0) texts.push(`${table.failed} flights failed`);
-    if (table !== null && table.unreadable > 0) texts.push(`${table.unreadable} runs unreadable`);
-    texts.push(`last result ${formatDate(sweep.changed_utc)}`);
+    const texts = progressTexts(shown);
     const share = progress === null || progress.most === 0 ? 0 : progress.passed / progress.most;
     rebuild(this.progress, JSON.stringify([texts, share, sweep.flying, problem]), () => [
       ...(sweep.flying
@@ -176,6 +165,25 @@ export class SweepHead {
         : [h('span', { class: 'sweep-problem', 'data-role': 'sweep-problem' }, problem)]),
     ]);
   }
+}
+
+/** How far the sweep is, in words. */
+export function progressTexts({ sweep, table }: SweepState): string[] {
+  const { progress } = sweep;
+  const texts: string[] = [];
+  if (progress !== null) {
+    const { passed, most } = progress;
+    texts.push(passed < most ? `${passed} of ${most} flights` : `${most} flights`);
+    if (sweep.flying && progress.left_s !== null && progress.left_s > 0) {
+      texts.push(`about ${formatDuration(progress.left_s)} left`);
+    }
+    if (progress.spent_s > 0) texts.push(`${formatDuration(progress.spent_s)} flown`);
+  }
+  if (sweep.flying && sweep.here === null) texts.push('flown by another process');
+  if (table === null) return [...texts, 'no flight is over yet'];
+  if (table.failed > 0) texts.push(`${table.failed} flights failed`);
+  if (table.unreadable > 0) texts.push(`${table.unreadable} runs unreadable`);
+  return [...texts, `last result ${formatDate(sweep.changed_utc)}`];
 }
 
 function continueHint(envelope: SweepEntry['envelope']): string {

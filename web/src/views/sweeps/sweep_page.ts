@@ -101,13 +101,12 @@ export class SweepPageView implements View {
   }
 
   private messageText(): string {
-    const { error, sweeps, shown } = this.context.store.state.sweepPage;
+    const { error, sweeps } = this.context.store.state.sweepPage;
     if (error !== null) return error;
     if (sweeps === null) return 'Reading';
     if (sweeps.length === 0) {
       return 'There are no sweeps yet. Start one with New sweep, or by overfly sweep FILE --out sweeps/NAME.';
     }
-    if (shown !== null && shown.table === null) return 'No flight is over yet.';
     return '';
   }
 

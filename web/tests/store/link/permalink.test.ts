@@ -125,6 +125,7 @@ describe('permalink', () => {
     ['t', '4x'],
     ['align', 'Sim(3)'],
     ['plots', '<script>'],
+    ['plots', 'zzz'],
     ['compare', 'a b'],
     ['window', '3,1'],
     ['window', '1'],

@@ -20,7 +20,7 @@ function making(statuses: readonly RunStatus[], report = () => Promise.resolve(p
   const rest = { report: vi.fn(report) };
   const maker = new ReportMaker(store, rest, new Notices(store, vi.fn()));
   const texts = () => store.state.notices.map(({ text }) => text);
-  return { maker, rest, texts };
+  return { maker, rest, store, texts };
 }
 
 describe('ReportMaker', () => {
@@ -44,6 +44,18 @@ describe('ReportMaker', () => {
     expect(await none.maker.make()).toBeNull();
     expect(none.texts()[0]).toMatch(/None of the shown runs has ended/);
     expect(none.rest.report).not.toHaveBeenCalled();
+  });
+
+  it('leaves out a run that somebody has deleted', async () => {
+    const { maker, rest, store, texts } = making(['completed', 'completed']);
+    const [first, second] = store.state.watched;
+    if (first === undefined || second === undefined) throw new Error('no runs');
+    first.deleted = true;
+    await maker.make();
+    expect(rest.report).toHaveBeenCalledWith(['r1'], 'sim3');
+    second.deleted = true;
+    expect(await maker.make()).toBeNull();
+    expect(texts()[0]).toMatch(/is on the server/);
   });
 
   it('says why the server makes none, and can be asked again', async () => {

@@ -18,7 +18,7 @@ const runs = [
     tags: ['wind'],
   }),
   sampleRun({ id: 'b', results: [result('feature', 'LOST')], scenario: 'hills' }),
-  sampleRun({ id: 'c', status: 'failed' }),
+  sampleRun({ id: 'c', status: 'failed', results: [result('feature', 'LOST')] }),
 ];
 const ids = (filter: Partial<typeof kNoFilter>) =>
   filtered(runs, { ...kNoFilter, ...filter }).map(({ id }) => id);

@@ -15,6 +15,14 @@ const runs = [
   sampleRun({ id: 'e', title: 'Beach', results: [result('x', 2)] }),
 ];
 
+describe('leastError_m', () => {
+  it('is of a flight that reached its end', () => {
+    const results = [result('x', 2)];
+    expect(leastError_m(sampleRun({ results }))).toBe(2);
+    expect(leastError_m(sampleRun({ results, status: 'cancelled' }))).toBeNull();
+  });
+});
+
 describe('ordered', () => {
   it.each([
     ['newest', 'abcde'],

@@ -13,34 +13,46 @@ const runs = [
     id: 'b',
     title: 'Hills at 10 m/s',
     flight: '',
-    status: 'failed',
     texture_limited: true,
+  }),
+  sampleRun({
+    id: 'c',
+    title: 'Stopped',
+    flight: '',
+    status: 'cancelled',
+    estimators: [],
+    results: [
+      { estimator: 'x', outcome: 'COMPLETED', position_rmse_m: 1, position_rmse_percent: null },
+    ],
   }),
 ];
 
 describe('matching', () => {
   it.each([
-    ['', ['a', 'b']],
+    ['', ['a', 'b', 'c']],
     ['  hills ', ['a', 'b']],
     ['HILLS 25', ['a']],
-    ['failed', ['b']],
+    ['cancelled', ['c']],
     ['smooth', ['a']],
     ['texture', ['b']],
     ['hills nothing', []],
-    ['seed:1', ['a']],
+    ['seed:1', ['a', 'c']],
     ['seed:10', ['b']],
     ['seed 10', ['b']],
     ['Outcome:lost', ['b']],
+    // Only flights that reached their end have outcomes.
+    ['outcome:completed', []],
+    ['stopped completed', []],
     ['outcome:lost seed:1', []],
     ['estimator:feat', ['a', 'b']],
-    ['status:failed tag:wind', ['b']],
+    ['status:completed tag:wind', ['b']],
     ['tag:"for the paper"', ['b']],
     ['"25 m/s"', ['a']],
     ['"m/s 25"', []],
     ['title:smooth', []],
     ['unknown:1', []],
     ['seed:', []],
-    ['""', ['a', 'b']],
+    ['""', ['a', 'b', 'c']],
   ])('finds by %j', (text, ids) => {
     expect(matching(runs, text).map(({ id }) => id)).toEqual(ids);
   });

@@ -66,6 +66,17 @@ describe('StudyForm', () => {
     expect(store.state.studyPage.form).toBeNull();
   });
 
+  it('can explain nothing where no estimator of a completed run failed', async () => {
+    form.openExplain(null);
+    expect(form.canStart(state())).toBe(true);
+    const failed = { ...scoredRun('failed', { feature: 'LOST' }), status: 'failed' as const };
+    store.state.runs = [failed];
+    form.openExplain(failed);
+    expect(form.canStart(state())).toBe(false);
+    await form.openScenario('predict', null);
+    expect(form.canStart(state())).toBe(true);
+  });
+
   it('tries only the causes that are ticked', async () => {
     form.openExplain(null);
     form.setCause('blur', true);
