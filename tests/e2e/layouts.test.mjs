@@ -139,6 +139,50 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     });
   }
 
+  step('arranges a layout again for a new size of the window', async () => {
+    await chooseLayout('fly');
+    const places = async () => (await settledGroups()).map(({ tabs, left, top }) => [tabs.join(), Math.round(left), Math.round(top)]);
+    const untilLeft = (px) =>
+      dashboard.until(
+        (left) => {
+          const scene = document.querySelector('.dv-groupview:has([data-panel=scene])');
+          return Math.abs(scene.getBoundingClientRect().left - left) < 4;
+        },
+        px,
+      );
+    const before = await places();
+    const sceneAt = (list) => list.find(([tabs]) => tabs === '3D view')[1];
+    await page.setViewportSize(kSizes[1]);
+    // The column of forms is 312 px wide there; scaled in proportion it would have 410.
+    await untilLeft(320);
+    await page.setViewportSize(kSizes[0]);
+    await untilLeft(sceneAt(before));
+    assert.deepEqual(await places(), before);
+    // Also if the window got its size while one panel filled it.
+    await page.locator('.dv-groupview:has([data-panel=plots]) .enlarge').click();
+    await page.setViewportSize(kSizes[1]);
+    await dashboard.until(() => document.querySelector('[data-panel=plots]').clientWidth > 1800);
+    await page.keyboard.press('Escape');
+    await untilLeft(320);
+    await page.setViewportSize(kSizes[0]);
+    await untilLeft(sceneAt(before));
+  });
+
+  step('leaves room for the curves of every plot', async () => {
+    for (const name of ['fly', 'compare', 'estimator']) {
+      await chooseLayout(name);
+      await page.locator('.plot .u-over').first().waitFor();
+      await dashboard.untilSettled();
+      const low = await page.evaluate(() =>
+        [...document.querySelectorAll('.dock .plot')]
+          .filter((plot) => plot.querySelector('.u-over')?.clientHeight < 58)
+          .map((plot) => plot.dataset.axis),
+      );
+      assert.deepEqual(low, [], name);
+    }
+    await chooseLayout('fly');
+  });
+
   step('keeps a moved panel and a new width over a reload', async () => {
     await chooseLayout('fly');
     const log = page.locator('.dv-tab', { hasText: /^Log$/ });

@@ -19,11 +19,14 @@ export interface DockOptions {
   host: (name: PanelName) => PanelHost;
   /** Called after the viewer has rearranged something. */
   onRearranged: (tree: LayoutNode) => void;
+  /** Called once a new size of the window has settled: the library has scaled all panels by it. */
+  onResized: () => void;
 }
 
 export class Dock {
   readonly root = h('div', { class: 'dock' });
   private readonly api: DockviewApi;
+  private readonly sizes: ResizeObserver;
   /** As arranged last, and in which area. */
   private basis: { tree: LayoutNode | null; area: Area } | null = null;
   private timer = 0;
@@ -42,10 +45,15 @@ export class Dock {
         init: () => undefined,
       }),
     });
-    this.api.onDidLayoutChange(() => {
+    const settle = () => {
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => this.compare(), kSettle_ms);
-    });
+    };
+    this.api.onDidLayoutChange(settle);
+    this.api.onDidMaximizedGroupChange(settle);
+    // The library does not report a new size of the window.
+    this.sizes = new ResizeObserver(settle);
+    this.sizes.observe(this.root);
   }
 
   get area(): Area {
@@ -97,6 +105,7 @@ export class Dock {
 
   dispose(): void {
     clearTimeout(this.timer);
+    this.sizes.disconnect();
     this.api.dispose();
   }
 
@@ -124,6 +133,7 @@ export class Dock {
       area.width_px !== this.basis.area.width_px || area.height_px !== this.basis.area.height_px;
     const before = this.basis.tree;
     this.basis = { tree, area };
+    if (resized) this.options.onResized();
     if (tree === null || resized) return;
     const same = before !== null && sameArrangement(tree, before, 0.002) && sameFront(tree, before);
     if (!same) this.options.onRearranged(tree);

@@ -5,6 +5,7 @@ import type { Arranger } from '../../store/layouts/layouts';
 import type { PanelName } from '../../store/layouts/panel_names';
 import type { Topic } from '../../store/state';
 import { h } from '../dom';
+import { focusAgain, focusIn } from '../focus';
 import type { Context, View } from '../view';
 import { Dock } from './dock';
 import { PanelHost } from './panel_host';
@@ -41,6 +42,7 @@ export class Frame implements View, Arranger {
       this.dock = new Dock({
         host,
         onRearranged: (rearranged) => this.context.layouts.onRearranged(rearranged),
+        onResized: () => this.arrangeAgain(),
       });
       this.root.append(this.dock.root);
     }
@@ -85,6 +87,14 @@ export class Frame implements View, Arranger {
     this.dock?.arrange(tree);
     this.stack?.arrange(panelsOf(tree));
     this.context.store.change('layout');
+  }
+
+  /** A layout is made for the size of the window. What the viewer has arranged keeps its proportions. */
+  private arrangeAgain(): void {
+    if (this.context.layouts.isChanged) return;
+    const focused = focusIn(this.root);
+    this.arrange();
+    if (focused !== null) focusAgain(this.root, focused);
   }
 
   private area() {

@@ -6,7 +6,7 @@ import { formatNumber } from '../../store/format';
 import { h, setText } from '../dom';
 import { paint } from '../paint';
 import { paddedRange } from '../../store/plots/plot_range';
-import { axisNumbers } from '../plots/axis_numbers';
+import { axisNumbers, kValueAxis } from '../plots/axis_numbers';
 
 export interface LogPlotOptions {
   key: string;
@@ -129,7 +129,7 @@ export class LogPlot {
         timeLabels
           ? { ...axis, size: 20, gap: 2, values: axisNumbers, space: 50 }
           : { ...axis, size: 0, values: () => [], space: 50 },
-        { ...axis, size: 46, gap: 3, values: axisNumbers, space: 18 },
+        { ...axis, ...kValueAxis, size: 46, gap: 3 },
       ],
       series: [
         {},

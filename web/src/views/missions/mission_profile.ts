@@ -2,16 +2,20 @@
 // overlap, texels. One axis, one cursor.
 import type { MissionSamples } from '../../protocol/mission_types';
 import { formatNumber } from '../../store/format';
+import { ticks, tickText } from '../../store/plots/path_frame';
+import { valueTicks } from '../../store/plots/value_ticks';
 import type { MissionLimits, MissionReport } from '../../protocol/mission_types';
 import type { MissionPage } from '../../store/missions/mission_page';
 import { h, setText } from '../dom';
 import { paint } from '../paint';
 import { cursorSample } from './map_paths';
 import type { Strip } from './profile_strips';
-import { kStrips, stripRange, ticksOf } from './profile_strips';
+import { kStrips, stripRange } from './profile_strips';
 
 const kLeft_px = 52;
 const kRight_px = 10;
+/** Between the numbers of the distance. */
+const kDistances_px = 60;
 const kTop_px = 4;
 const kBottom_px = 22;
 const kGap_px = 4;
@@ -110,14 +114,17 @@ export class MissionProfile {
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
     pen.lineWidth = 1;
-    for (const tick of ticksOf(low, high, height)) {
+    const values = valueTicks(low, high, height);
+    for (const tick of values) {
       pen.strokeStyle = paint('var(--grid)');
       line(pen, kLeft_px, y(tick), kLeft_px + this.width(), y(tick));
       pen.fillStyle = paint('var(--muted)');
-      pen.fillText(formatNumber(tick, high - low < 2 ? 1 : 0), kLeft_px - 5, y(tick));
+      const step = (values[1] ?? 1) - (values[0] ?? 0);
+      pen.fillText(tickText(tick, step), kLeft_px - 5, y(tick));
     }
     const limit = strip.limit?.(limits);
-    if (limit !== undefined && limit > low && limit < high) {
+    const limitShown = limit !== undefined && limit > low && limit < high;
+    if (limitShown) {
       pen.strokeStyle = paint('var(--limit)');
       pen.setLineDash([4, 4]);
       line(pen, kLeft_px, y(limit), kLeft_px + this.width(), y(limit));
@@ -134,6 +141,13 @@ export class MissionProfile {
       path(pen, curve.values(samples), x, y);
     }
     pen.restore();
+    if (limitShown) {
+      pen.textAlign = 'right';
+      const below = y(limit) - top < kLabel_px;
+      pen.textBaseline = below ? 'top' : 'bottom';
+      pen.fillStyle = paint('var(--muted)');
+      pen.fillText(`limit ${limit}`, kLeft_px + this.width(), y(limit) + (below ? 2 : -1));
+    }
     pen.textAlign = 'left';
     pen.textBaseline = 'bottom';
     pen.fillStyle = paint('var(--text)');
@@ -170,7 +184,7 @@ export class MissionProfile {
     pen.fillStyle = paint('var(--muted)');
     const length = this.length();
     const kilometres = length >= 2000;
-    for (const tick of ticksOf(0, length, this.width() / 2)) {
+    for (const tick of ticks(0, length, this.width() / kDistances_px)) {
       pen.textAlign = tick === 0 ? 'left' : 'center';
       const x = this.xOf(tick);
       if (x > kLeft_px + this.width() - 24) continue;

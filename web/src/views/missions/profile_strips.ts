@@ -75,15 +75,3 @@ export function stripRange(
   const margin = (high - low) * 0.06;
   return [strip.shows === null ? low - margin : low, high + margin];
 }
-
-/** Round values, some 30 pixels apart. */
-export function ticksOf(low: number, high: number, size_px: number): number[] {
-  const wanted = Math.max(2, Math.floor(size_px / 30));
-  const rough = (high - low) / wanted;
-  if (!(rough > 0)) return [];
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= rough) ?? rough;
-  const ticks: number[] = [];
-  for (let i = Math.ceil(low / step); i * step <= high; i += 1) ticks.push(i * step);
-  return ticks;
-}

@@ -12,7 +12,7 @@ import type { PlotSpec } from '../../store/plots/plot_specs';
 import { curveExtent, sharedExtent } from '../../store/plots/shared_extent';
 import { spanAt, stateName } from '../../store/state_spans';
 import type { Span } from '../../store/playback/time_window';
-import { axisNumbers } from './axis_numbers';
+import { axisNumbers, kValueAxis } from './axis_numbers';
 import { BeyondNote } from './beyond_note';
 import { paintCurves } from './curve_painter';
 import { plotTip } from './plot_tip';
@@ -31,7 +31,12 @@ export interface PlotActions {
 
 const kFont = '10px system-ui, sans-serif';
 /** Beyond this many, the values of all curves are reached by scrolling. */
-export const kMostReadouts = 6;
+const kMostReadouts = 6;
+/** Of the curves. What does not fit into the panel then is reached by scrolling. */
+const kLeastCurves_px = 60;
+/** Above the curves, and below them or the lanes. */
+const kPadding_px = 10;
+const kTimeLabels_px = 20;
 /** Of the lanes with the estimators' states. */
 const kLane_px = 5;
 const kMostLanes_px = 24;
@@ -71,7 +76,7 @@ function crowding(curves: PlotSpec['curves']): string {
 export class Plot {
   readonly root: HTMLElement;
   private readonly plot: uPlot;
-  private readonly area = h('div', { class: 'plot-area' });
+  private readonly area: HTMLElement;
   private readonly cursor = h('div', { class: 'plot-cursor' });
   private readonly beyond = new BeyondNote();
   private readonly readouts: HTMLElement[];
@@ -102,6 +107,11 @@ export class Plot {
       h('span', { class: 'unit' }, spec.unit),
       h('span', { class: 'readouts' }, ...this.readouts),
     );
+    const below_px = lanesHeight_px(spec.lanes?.length ?? 0) + (timeLabels ? kTimeLabels_px : 0);
+    this.area = h('div', {
+      class: 'plot-area',
+      style: `min-height:${kLeastCurves_px + kPadding_px + below_px}px`,
+    });
     this.root = h('div', { class: 'plot', 'data-axis': spec.key }, title, this.area);
     this.plot = new uPlot(this.uplotOptions(timeLabels, leads), axesData([0, 1]), this.area);
     this.plot.over.append(this.cursor, this.beyond.root);
@@ -312,9 +322,15 @@ export class Plot {
       },
       axes: [
         timeLabels
-          ? { ...axis, size: 20 + lanes, gap: 2 + lanes, values: axisNumbers, space: 44 }
+          ? {
+              ...axis,
+              size: kTimeLabels_px + lanes,
+              gap: 2 + lanes,
+              values: axisNumbers,
+              space: 44,
+            }
           : { ...axis, size: lanes, values: () => [], space: 44 },
-        { ...axis, size: 40, gap: 3, values: axisNumbers, space: 20 },
+        { ...axis, ...kValueAxis, size: 40, gap: 3 },
       ],
       // uPlot draws the axes; the curves are drawn over them.
       series: [{}, { paths: () => null, points: { show: false } }],

@@ -18,7 +18,7 @@ import { frameOf, makePanel } from '../panel';
 import { DriftPlot } from './drift_plot';
 import type { PlotActions } from './plot';
 import { takeTimeKeys } from './time_commands';
-import { kMostReadouts, Plot } from './plot';
+import { Plot } from './plot';
 import { kPathAxes, PathPlot } from './path_plot';
 import { sideBySide } from './plot_canvas';
 import type { PlotFile } from './plot_files';
@@ -31,11 +31,8 @@ import type { Context, View } from '../view';
 const kRedraw_ms = 1000 / 15;
 const kMostColumns = 3;
 const kFew = 3;
-/** A plot with axis, title and values. Below this the panel scrolls. */
+/** Of a plot with axis, title and values. */
 const kLeastWidth_px = 190;
-const kLeastHeight_px = 92;
-/** More for values in rows of their own. */
-const kLeastHeightOfMany_px = 124;
 
 /** Groups that are panels of their own as well. */
 type PanelGroup = 'errors' | 'image';
@@ -273,9 +270,7 @@ export class PlotsPanel implements View {
     );
     const down = Math.ceil(specs.length / columns);
     this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
-    const many = specs.some(({ curves }) => curves.length > kMostReadouts);
-    const least_px = many ? kLeastHeightOfMany_px : kLeastHeight_px;
-    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(${least_px}px, 1fr))`;
+    this.grid.style.gridTemplateRows = `repeat(${down}, minmax(min-content, 1fr))`;
     if (kUntimed.includes(this.group)) this.grid.removeAttribute('style');
     const overTime = specs.length > 0;
     setAttribute(this.grid, 'tabindex', overTime ? '0' : null);

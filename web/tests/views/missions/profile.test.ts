@@ -2,7 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { kUsualLimits } from '../../../src/store/missions/mission_page';
 import { checkGroups } from '../../../src/views/missions/checks';
 import { cursorSample, pathParts, sampleAt } from '../../../src/views/missions/map_paths';
-import { kStrips, stripRange, ticksOf } from '../../../src/views/missions/profile_strips';
+import { kStrips, stripRange } from '../../../src/views/missions/profile_strips';
 import { sampleReport } from '../../support/missions';
 
 describe('the path on the map', () => {
@@ -72,11 +72,5 @@ describe('the strips of the profile', () => {
     expect(range('Bank')[1]).toBeGreaterThan(45);
     expect(range('Image motion')[1]).toBeLessThan(20); // the limit of 60 px is far away
     expect(range('Overlap')).toEqual([0, 1.06]);
-  });
-
-  it('have round ticks', () => {
-    expect(ticksOf(0, 100, 100)).toEqual([0, 50, 100]);
-    expect(ticksOf(0, 1, 60)).toEqual([0, 0.5, 1]);
-    expect(ticksOf(5, 5, 60)).toEqual([]);
   });
 });
