@@ -183,6 +183,25 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     await chooseLayout('fly');
   });
 
+  step('brings the tools that have no room by the arrow at their edge', async () => {
+    await chooseLayout('camera');
+    const group = page.locator('.dv-groupview:has([data-panel=scene])');
+    const inSight = () =>
+      dashboard.until(() => {
+        const tools = document.querySelector('.dv-groupview:has([data-panel=scene]) .panel-tools');
+        const last = [...tools.children].at(-1).getBoundingClientRect();
+        return last.right <= tools.getBoundingClientRect().right + 1;
+      });
+    const more = group.getByLabel('Scroll to the right');
+    await more.click();
+    await inSight();
+    await more.waitFor({ state: 'hidden' });
+    await group.getByLabel('Scroll to the left').click();
+    await more.waitFor();
+    await group.getByLabel('Scroll to the left').waitFor({ state: 'hidden' });
+    await chooseLayout('fly');
+  });
+
   step('keeps a moved panel and a new width over a reload', async () => {
     await chooseLayout('fly');
     const log = page.locator('.dv-tab', { hasText: /^Log$/ });
@@ -405,6 +424,12 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
       assert.deepEqual(outside, []);
       await dashboard.untilSameInstant();
       await dashboard.screenshot(`narrow_${width}x${height}`);
+      await page.locator('[data-role=pages-menu]').click();
+      await page.locator('[data-role=open-scores]').click();
+      await page.locator('[data-panel=scoring]').waitFor();
+      await page.keyboard.press('Escape');
+      await page.locator('[data-role=pages-menu]:focus').waitFor();
+      assert.ok(!(await page.locator('[data-role=open-scores]').isVisible()));
     }
     await page.setViewportSize(kSizes[0]);
     await dashboard.until(() => document.querySelectorAll('.dv-groupview').length === 8);

@@ -10,6 +10,7 @@ import { formatNumber, formatPercent } from '../store/format';
 import { h, setAttribute, setText } from './dom';
 import { icon } from './icons';
 import { LayoutMenu } from './frame/layout_menu';
+import { Menu } from './menu';
 import { ReportButton } from './runs/report_button';
 import { ThemeMenu } from './theme_menu';
 import type { Context, View } from './view';
@@ -92,7 +93,7 @@ export class HeaderBar implements View {
       this.error,
       h('span', { class: 'spacer' }),
       this.attribution,
-      h('nav', { class: 'page-buttons', 'aria-label': 'Pages' }, ...pageButtons(context)),
+      pagesMenu(context),
       this.layouts.root,
       this.themes.root,
       this.connection,
@@ -189,6 +190,38 @@ export class HeaderBar implements View {
     show();
     this.countdown = window.setInterval(show, 500);
   }
+}
+
+/** On a wide screen its sheet is a row of the bar, and it has no opener (layout.css, narrow.css). */
+function pagesMenu(context: Context): HTMLElement {
+  const opener = h(
+    'button',
+    {
+      class: 'menu-opener',
+      type: 'button',
+      title: 'Pages',
+      'aria-label': 'Pages',
+      'data-role': 'pages-menu',
+    },
+    icon('menu'),
+  );
+  const pages = h(
+    'nav',
+    { class: 'page-buttons', id: 'pages', 'aria-label': 'Pages' },
+    ...pageButtons(context),
+  );
+  const menu = new Menu(opener, pages);
+  // Before the page opens: it gives the focus back to what had it.
+  pages.addEventListener(
+    'click',
+    () => {
+      if (menu.isOpen) opener.focus();
+      menu.close();
+    },
+    { capture: true },
+  );
+  menu.root.classList.add('pages-menu');
+  return menu.root;
 }
 
 /** Of the pages over the dashboard. */

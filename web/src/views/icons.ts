@@ -4,7 +4,8 @@ import { svg } from './svg';
 
 const kPaths = {
   layout: 'M2 2.5h12v11H2zM3.5 4v8h3V4zM8 4v3.2h4.5V4zM8 8.7V12h4.5V8.7z',
-
+  menu: 'M2.5 3.5h11V5h-11zM2.5 7.2h11v1.6h-11zM2.5 11h11v1.5h-11z',
+  chevron: 'M6 3.2 10.8 8 6 12.8 4.9 11.7 8.6 8 4.9 4.3z',
   search:
     'M7 2.5a4.5 4.5 0 0 1 3.6 7.2l3.2 3.2-1 1-3.2-3.2A4.5 4.5 0 1 1 7 2.5zM7 4a3 3 0 1 0 0 6 3 3 0 0 0 0-6z',
   play: 'M5 3.5v9l7.5-4.5z',

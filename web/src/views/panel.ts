@@ -2,6 +2,7 @@
 import type { RateBadge } from '../store/pictures/picture_rates';
 import type { RunPlayback } from '../store/playback/run_playback';
 import { h, setAttribute, setText } from './dom';
+import { scrollRow } from './scroll_row';
 
 export interface Panel {
   root: HTMLElement;
@@ -28,7 +29,14 @@ export function makePanel(name: string, title: string): Panel {
   // Over the picture: in the header it would come and go among the tools.
   const body = h('div', { class: 'panel-body' }, empty, rate);
   const root = h('section', { class: 'panel', 'data-panel': name, 'aria-label': title });
-  root.append(h('header', { class: 'panel-header' }, h('h2', {}, title), tools, badge), body);
+  const header = h(
+    'header',
+    { class: 'panel-header' },
+    h('h2', {}, title),
+    scrollRow(tools),
+    badge,
+  );
+  root.append(header, body);
   return {
     root,
     tools,

@@ -5,6 +5,7 @@ import { kPanelNames, kPanels } from '../../store/layouts/panel_names';
 import { kReadyLayouts } from '../../store/layouts/ready_layouts';
 import { h, rebuild, setAttribute, setText } from '../dom';
 import { icon } from '../icons';
+import { Menu } from '../menu';
 import type { Context, View } from '../view';
 import { exportButton, LayoutFiles } from './layout_files';
 
@@ -12,7 +13,7 @@ export class LayoutMenu implements View {
   readonly root: HTMLElement;
   private readonly label = h('span', { class: 'menu-label' });
   private readonly opener: HTMLElement;
-  private readonly sheet: HTMLElement;
+  private readonly menu: Menu;
   private readonly layouts = h('div', { class: 'menu-list', 'data-role': 'layouts' });
   private readonly panels = h('div', { class: 'menu-list', 'data-role': 'panels' });
   private readonly reset: HTMLButtonElement;
@@ -51,12 +52,11 @@ export class LayoutMenu implements View {
       this.name,
       h('button', { class: 'secondary', type: 'submit' }, 'Keep'),
     );
-    this.sheet = h(
+    const sheet = h(
       'div',
       {
         class: 'menu-sheet',
         id: 'layout-menu',
-        hidden: true,
         role: 'group',
         'aria-label': 'Layout',
       },
@@ -77,15 +77,15 @@ export class LayoutMenu implements View {
         type: 'button',
         title: 'Layouts and panels',
         'data-role': 'layout-menu',
-        'aria-controls': 'layout-menu',
-        'aria-expanded': 'false',
-        onclick: () => this.open(this.sheet.hidden),
       },
       icon('layout'),
       this.label,
     );
-    this.root = h('div', { class: 'menu' }, this.opener, this.sheet);
-    this.closeOutside();
+    this.menu = new Menu(this.opener, sheet, () => {
+      this.problem.hidden = true;
+      this.draw();
+    });
+    this.root = this.menu.root;
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -95,14 +95,7 @@ export class LayoutMenu implements View {
     setAttribute(this.opener, 'aria-label', `Layout: ${this.label.textContent}`);
     setAttribute(this.root, 'data-layout', layouts.current);
     this.reset.disabled = !layouts.isChanged;
-    if (!this.sheet.hidden) this.draw();
-  }
-
-  private open(open: boolean): void {
-    this.sheet.hidden = !open;
-    this.problem.hidden = true;
-    setAttribute(this.opener, 'aria-expanded', String(open));
-    if (open) this.draw();
+    if (this.menu.isOpen) this.draw();
   }
 
   private draw(): void {
@@ -162,7 +155,7 @@ export class LayoutMenu implements View {
         'aria-pressed': name === layouts.current ? 'true' : 'false',
         onclick: () => {
           layouts.choose(name);
-          this.open(false);
+          this.menu.close();
         },
       },
       title,
@@ -175,17 +168,6 @@ export class LayoutMenu implements View {
     setText(this.problem, problem ?? '');
     if (problem !== null) return;
     this.name.value = '';
-    this.open(false);
-  }
-
-  private closeOutside(): void {
-    document.addEventListener('pointerdown', ({ target }) => {
-      if (target instanceof Node && !this.root.contains(target)) this.open(false);
-    });
-    document.addEventListener('keydown', ({ key }) => {
-      if (key !== 'Escape' || this.sheet.hidden) return;
-      this.open(false);
-      this.opener.focus();
-    });
+    this.menu.close();
   }
 }
