@@ -28,10 +28,12 @@ export function placeOn({ logarithmic, low, high }: ErrorAxis, error: number): n
   return Math.min(1, Math.max(0, place));
 }
 
-export function axisTicks({ logarithmic, low, high }: ErrorAxis): number[] {
-  if (!logarithmic) return ticks(low, high, kMostTicks);
+/** @param room  for so many numbers */
+export function axisTicks({ logarithmic, low, high }: ErrorAxis, room: number): number[] {
+  const most = Math.min(kMostTicks, Math.max(1, Math.floor(room)));
+  if (!logarithmic) return ticks(low, high, most);
   const decades = Math.round(Math.log10(high / low));
-  const step = Math.ceil(decades / kMostTicks);
+  const step = Math.ceil(decades / most);
   return Array.from({ length: Math.floor(decades / step) + 1 }, (_, i) => low * 10 ** (i * step));
 }
 

@@ -5,6 +5,7 @@ import { notCounted } from '../../store/runs/counted_results';
 import { axisTicks, errorAxis, histogram, placeOn } from '../../store/runs/error_axis';
 import type { Repeats } from '../../store/runs/repeats';
 import { kSameFlight, repeatChoices, repeatedRuns, repeatsOf } from '../../store/runs/repeats';
+import { repeatLabels } from '../../store/runs/repeat_labels';
 import { repeatsCsv } from '../../store/runs/repeats_csv';
 import { svgFile } from '../../store/plots/svg_pen';
 import type { State, Topic } from '../../store/state';
@@ -18,14 +19,29 @@ import { saveMenu } from '../plots/plot_files';
 import { drawingContent, svg } from '../svg';
 import type { Context, View } from '../view';
 
-const kRow_px = 58;
+const kLeastRow_px = 58;
+const kLine_px = 14;
 const kBox_px = 18;
 const kBars_px = 26;
 const kAxis_px = 36;
-const kLabels_px = 132;
+const kLeft_px = 9;
+/** Between the labels and the axis. */
+const kGap_px = 14;
 const kRight_px = 24;
 const kBins = 24;
+/** Of a number of the axis. */
+const kNumber_px = 38;
 const kLeastWidth_px = 60;
+
+/** A row of the picture: an estimator. */
+interface Row extends Repeats {
+  labels: string[];
+  top_px: number;
+  height_px: number;
+  colour: string;
+}
+
+type Place = (error_m: number) => number;
 
 export class RepeatsPanel implements View {
   readonly root: HTMLElement;
@@ -71,7 +87,7 @@ export class RepeatsPanel implements View {
     const compared = repeatedRuns(runs, this.choice.value, state.run);
     const repeats = repeatsOf(compared);
     this.repeats = repeats;
-    const width_px = Math.max(kLeastWidth_px, this.panel.body.clientWidth - kLabels_px);
+    const width_px = this.panel.body.clientWidth;
     rebuild(this.drawing, JSON.stringify([repeats, width_px, state.run?.estimators]), () =>
       repeats.length === 0 ? [] : [this.picture(repeats, width_px, state.run?.estimators ?? [])],
     );
@@ -92,40 +108,48 @@ export class RepeatsPanel implements View {
     };
   }
 
-  private picture(repeats: readonly Repeats[], width_px: number, named: readonly string[]): Node {
+  private picture(repeats: readonly Repeats[], most_px: number, named: readonly string[]): Node {
     const axis = errorAxis(repeats.flatMap(({ errors }) => errors.map(({ error_m }) => error_m)));
-    const height_px = repeats.length * kRow_px + kAxis_px;
-    const x_px = (error_m: number) => kLabels_px + placeOn(axis, error_m) * (width_px - kRight_px);
+    const rows = rowsOf(repeats, named);
+    const bottom_px = rows.reduce((sum_px, { height_px }) => sum_px + height_px, 0);
+    const labels_px = kLeft_px + this.widest_px(rows.flatMap(({ labels }) => labels)) + kGap_px;
+    const width_px = Math.max(kLeastWidth_px, most_px - labels_px - kRight_px);
+    const x_px = (error_m: number) => labels_px + placeOn(axis, error_m) * width_px;
     return svg(
       'svg',
       {
-        width: kLabels_px + width_px,
-        height: height_px,
+        width: labels_px + width_px + kRight_px,
+        height: bottom_px + kAxis_px,
         role: 'img',
         'aria-label': repeats.map(wordsOf).join('; '),
       },
-      ...axisMarks(axis, x_px, repeats.length * kRow_px),
-      ...repeats.flatMap((one, i) =>
-        this.row(one, i, coloursOf(repeats, named)[i] ?? '', axis, x_px),
-      ),
+      ...axisMarks(axis, x_px, bottom_px),
+      ...rows.flatMap((row) => this.row(row, axis, x_px)),
     );
   }
 
-  private row(
-    { estimator, errors, summary, outcomes }: Repeats,
-    index: number,
-    colour: string,
-    axis: ErrorAxis,
-    x_px: (error_m: number) => number,
-  ): Node[] {
-    const top_px = index * kRow_px;
+  private widest_px(texts: readonly string[]): number {
+    const pen = document.createElement('canvas').getContext('2d');
+    if (pen === null) return 0;
+    // The widest font of them.
+    pen.font = `600 ${getComputedStyle(this.drawing).fontSize} system-ui, sans-serif`;
+    return Math.ceil(Math.max(...texts.map((text) => pen.measureText(text).width)));
+  }
+
+  private row(row: Row, axis: ErrorAxis, x_px: Place): Node[] {
+    const { estimator, errors, summary, top_px, colour } = row;
     const middle_px = top_px + 6 + kBox_px / 2;
-    const counts = outcomes.map(([outcome, count]) => `${count} ${outcome}`).join(', ');
-    const labels = [
-      svg('text', { x: 9, y: top_px + 17, class: 'repeats-name' }, estimator),
-      svg('text', { x: 9, y: top_px + 32, class: 'repeats-note' }, counts, title(counts)),
-      svg('text', { x: 9, y: top_px + 46, class: 'repeats-note' }, medianText(summary)),
-    ];
+    const labels = row.labels.map((text, i) =>
+      svg(
+        'text',
+        {
+          x: kLeft_px,
+          y: top_px + 17 + i * kLine_px,
+          class: i === 0 ? 'repeats-name' : 'repeats-note',
+        },
+        text,
+      ),
+    );
     if (summary === null) return labels;
     const { least, q1, median, q3, most } = summary;
     const line = (from: number, to: number) =>
@@ -133,7 +157,7 @@ export class RepeatsPanel implements View {
     const box = svg(
       'g',
       { 'data-box': estimator },
-      title(wordsOf({ estimator, errors, summary, outcomes })),
+      title(wordsOf(row)),
       line(least, q1),
       line(q3, most),
       svg('rect', {
@@ -161,7 +185,7 @@ export class RepeatsPanel implements View {
       ...bars(
         errors.map(({ error_m }) => error_m),
         axis,
-        top_px,
+        top_px + row.height_px - 4,
         colour,
         x_px,
       ),
@@ -171,12 +195,7 @@ export class RepeatsPanel implements View {
   }
 
   /** A single flight; a click shows it. */
-  private flight(
-    run: string,
-    error_m: number,
-    x_px: (error_m: number) => number,
-    y_px: number,
-  ): Node {
+  private flight(run: string, error_m: number, x_px: Place, y_px: number): Node {
     const dot = svg(
       'circle',
       { cx: x_px(error_m), cy: y_px, r: 3.5, class: 'repeats-flight', 'data-flight': run },
@@ -196,18 +215,30 @@ function coloursOf(repeats: readonly Repeats[], named: readonly string[]): strin
   });
 }
 
+/** One below the other, each as high as its labels. */
+function rowsOf(repeats: readonly Repeats[], named: readonly string[]): Row[] {
+  const colours = coloursOf(repeats, named);
+  let next_px = 0;
+  return repeats.map((one, i) => {
+    const labels = repeatLabels(one);
+    const top_px = next_px;
+    const height_px = Math.max(kLeastRow_px, kLine_px * (labels.length + 1));
+    next_px += height_px;
+    return { ...one, labels, top_px, height_px, colour: colours[i] ?? '' };
+  });
+}
+
 function bars(
   errors_m: readonly number[],
   axis: ErrorAxis,
-  top_px: number,
+  bottom_px: number,
   colour: string,
-  x_px: (error_m: number) => number,
+  x_px: Place,
 ): Node[] {
   const counts = histogram(axis, errors_m, kBins);
   const most = Math.max(...counts);
   const left_px = x_px(axis.low);
   const step_px = (x_px(axis.high) - left_px) / kBins;
-  const bottom_px = top_px + kRow_px - 4;
   return counts.flatMap((count, bin) =>
     count === 0
       ? []
@@ -228,11 +259,11 @@ function bars(
   );
 }
 
-function axisMarks(axis: ErrorAxis, x_px: (error_m: number) => number, bottom_px: number): Node[] {
+function axisMarks(axis: ErrorAxis, x_px: Place, bottom_px: number): Node[] {
   const scale = axis.logarithmic ? ', logarithmic' : '';
   const middle_px = (x_px(axis.low) + x_px(axis.high)) / 2;
   return [
-    ...axisTicks(axis).flatMap((tick) => [
+    ...axisTicks(axis, (x_px(axis.high) - x_px(axis.low)) / kNumber_px).flatMap((tick) => [
       svg('line', {
         x1: x_px(tick),
         x2: x_px(tick),
@@ -252,10 +283,6 @@ function axisMarks(axis: ErrorAxis, x_px: (error_m: number) => number, bottom_px
       `Position RMSE [m]${scale}`,
     ),
   ];
-}
-
-function medianText(summary: Repeats['summary']): string {
-  return summary === null ? 'no error' : `median ${formatNumber(summary.median, 3)} m`;
 }
 
 function wordsOf({ estimator, errors, summary }: Repeats): string {

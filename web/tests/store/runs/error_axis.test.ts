@@ -6,7 +6,8 @@ describe('errorAxis', () => {
     const axis = errorAxis([1, 20]);
     expect(axis).toEqual({ logarithmic: false, low: 0, high: 21 });
     expect(placeOn(axis, 10.5)).toBe(0.5);
-    expect(axisTicks(axis)).toEqual([0, 5, 10, 15, 20]);
+    expect(axisTicks(axis, 9)).toEqual([0, 5, 10, 15, 20]);
+    expect(axisTicks(axis, 2.5)).toEqual([0, 20]);
     expect(histogram(axis, [1, 2, 20], 3)).toEqual([2, 0, 1]);
   });
 
@@ -16,9 +17,11 @@ describe('errorAxis', () => {
     expect(placeOn(axis, 0.01)).toBe(0);
     expect(placeOn(axis, 10)).toBeCloseTo(0.6, 12);
     expect(placeOn(axis, 0)).toBe(0);
-    expect(axisTicks(axis).map((tick) => Number(tick.toPrecision(3)))).toEqual([
-      0.01, 0.1, 1, 10, 100, 1000,
-    ]);
+    const numbers = (room: number) =>
+      axisTicks(axis, room).map((tick) => Number(tick.toPrecision(3)));
+    expect(numbers(9)).toEqual([0.01, 0.1, 1, 10, 100, 1000]);
+    expect(numbers(3.3)).toEqual([0.01, 1, 100]);
+    expect(numbers(0)).toEqual([0.01, 1000]);
     expect(histogram(axis, [0.02, 0.03, 300], 5)).toEqual([2, 0, 0, 0, 1]);
   });
 
