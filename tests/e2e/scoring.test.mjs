@@ -84,6 +84,9 @@ describe('trajectories scored on their page', { skip, timeout: 600_000 }, () => 
     assert.equal(await figure(name, 'sim3', 'position_rmse_m').innerText(), plain);
     await page.locator('[data-score-group=pose]').click();
     await page.locator('.score-page [data-axis=yaw_deg] canvas').waitFor();
+    const legend = page.locator('.score-page [data-role=plot-legend]');
+    assert.deepEqual((await legend.innerText()).split('\n').map((name) => name.split('/').at(-1)), ['truth', 'feature', 'shifted.tum']);
+    await page.locator('.score-tools', { hasText: '[s]' }).waitFor();
     await dashboard.screenshot('scoring_pose_1600x900');
     await page.locator('[data-score-group=errors]').click();
     await page.locator('.score-page [data-axis=along_m] canvas').waitFor();
@@ -97,6 +100,9 @@ describe('trajectories scored on their page', { skip, timeout: 600_000 }, () => 
     await page.locator('[data-role=score-file]').setInputFiles(file);
     await page.locator('[data-role=score-message]').filter({ hasText: 'broken.tum' }).waitFor();
     assert.match(await page.locator('[data-role=score-message]').innerText(), /2/);
+    const message = await page.locator('[data-role=score-message]').boundingBox();
+    const plots = await page.locator('.score-plots').boundingBox();
+    assert.ok(message.y + message.height <= plots.y, 'the message is over the plots');
   });
 
   step('deletes what was uploaded, and nothing else can be deleted', async () => {

@@ -20,6 +20,7 @@ import { DriftPlot } from '../plots/drift_plot';
 import type { PathAxes } from '../plots/path_plot';
 import { kPathAxes, PathPlot } from '../plots/path_plot';
 import { sideBySide } from '../plots/plot_canvas';
+import { PlotLegend } from '../plots/plot_legend';
 import type { PlotActions } from '../plots/plot';
 import { Plot } from '../plots/plot';
 import type { PlotFile } from '../plots/plot_files';
@@ -34,8 +35,12 @@ const kGroups: readonly { name: ScoreGroup; label: string; hint: string; columns
 ];
 
 export class ScorePlots {
-  readonly root = h('div', { class: 'plot-grid' });
+  readonly root: HTMLElement;
+  private readonly grid = h('div', { class: 'plot-grid' });
+  private readonly legend = new PlotLegend();
   readonly tabs = h('span', { class: 'tabs' });
+  /** Of plots over time; the others name their axes. */
+  readonly axis = h('span', { class: 'unit' }, 'over time [s]');
   readonly files: HTMLSelectElement;
   private group: ScoreGroup = 'errors';
   private plots: Plot[] = [];
@@ -55,7 +60,8 @@ export class ScorePlots {
       axes,
       tracks: [],
     }));
-    new ResizeObserver(() => this.draw()).observe(this.root);
+    this.root = h('div', { class: 'score-plots' }, this.grid, this.legend.root);
+    new ResizeObserver(() => this.draw()).observe(this.grid);
     this.drawTabs();
   }
 
@@ -167,12 +173,22 @@ export class ScorePlots {
         return drift;
       });
     }
-    this.root.style.setProperty('--columns', String(columns));
-    this.root.dataset['group'] = this.group;
-    this.root.dataset['alignment'] = this.scored().mode;
+    this.grid.style.setProperty('--columns', String(columns));
+    this.grid.dataset['group'] = this.group;
+    this.grid.dataset['alignment'] = this.scored().mode;
     const paths = this.group === 'path' ? this.paths.map(({ plot }) => plot) : [];
     const parts = [...paths, ...this.drifts, ...this.plots];
-    this.root.replaceChildren(...parts.map(({ root }) => root));
+    this.grid.replaceChildren(...parts.map(({ root }) => root));
+    this.axis.hidden = specs.length === 0;
+    this.showLegend();
+  }
+
+  private showLegend(): void {
+    const tracks =
+      this.group === 'path' ? this.paths.map(({ tracks: curves }) => ({ curves })) : [];
+    const drifts = this.group === 'drift' ? this.driftSpecs() : [];
+    this.legend.show([...tracks, ...drifts, ...this.specs()]);
+    this.root.classList.toggle('has-legend', !this.legend.root.hidden);
   }
 
   private takePaths(): void {

@@ -55,6 +55,7 @@ export class SweepPageView implements View {
         'div',
         { class: 'sweep-centre' },
         this.head.root,
+        this.message,
         this.tools,
         h(
           'div',
@@ -65,7 +66,6 @@ export class SweepPageView implements View {
           this.differences,
           this.results.root,
         ),
-        this.message,
         this.form.root,
       ),
     );
