@@ -12,10 +12,22 @@ const kTitles = ['x east [m]', 'y north [m]', 'z up [m]'] as const;
 const kGap_px = 7;
 const kLine_px = 13;
 const kApart_px = 2;
+/** A name stands beyond the numbers, not between them. */
+const kNameApart_px = 12;
 /** From this part of a direction on it is more across than up. */
 const kSlant = 0.5;
-/** An edge seen from its end has no numbers. */
-const kLeastEdge_px = 40;
+/** A shorter edge is seen from its end: nothing can be read off it. */
+const kLeastEdge_px = 4;
+/** A shorter edge has the numbers of its ends only. */
+const kShortEdge_px = 40;
+/** Names are moved away from what they would cover. */
+const kStep_px = 4;
+const kMostSteps = 20;
+/** The middle of a text, from where it is placed. */
+const kMiddle_px: Readonly<Partial<Record<CanvasTextBaseline, number>>> = {
+  top: kLine_px / 2,
+  bottom: -kLine_px / 2,
+};
 
 type Pixel = [number, number];
 type Axis = 0 | 1 | 2;
@@ -33,7 +45,7 @@ export function paintAxes(pen: Pen, scales: AxisScales, view: OrbitView, map: Sc
   pen.lineWidth = 1;
   pen.font = kFont;
   paintGrid(pen, scales, sides, map);
-  const painted = new Numbers(pen);
+  const painted = new Texts(pen);
   const [x, y, z] = scales;
   const centre: Point3 = [(x.low + x.high) / 2, (y.low + y.high) / 2, z.low];
   const middle = toScreen(map, centre);
@@ -88,7 +100,7 @@ function paintGrid(pen: Pen, [x, y, z]: AxisScales, { farX, farY }: Sides, map: 
 
 /** @param inside  a pixel on the side of the edge that has no numbers */
 function paintEdge(
-  painted: Numbers,
+  painted: Texts,
   axis: Axis,
   scale: AxisScale,
   pixelOf: (value: number) => Pixel,
@@ -107,42 +119,72 @@ function paintEdge(
   const outwards = normalFrom(inside, from, [dx / length_px, dy / length_px]);
   align(pen, outwards);
   pen.fillStyle = paint('var(--muted)');
-  const numbers = scale.ticks.map((value) => ({
-    text: tickText(value, scale.step),
-    at: shifted(pixelOf(value), outwards, kGap_px),
-  }));
-  for (const { text, at } of numbers) painted.paint(text, at);
+  const ticks = length_px < kShortEdge_px ? [scale.ticks[0], scale.ticks.at(-1)] : scale.ticks;
+  const numbers = ticks.flatMap((value) =>
+    value === undefined
+      ? []
+      : { text: tickText(value, scale.step), at: shifted(pixelOf(value), outwards, kGap_px) },
+  );
+  for (const { text, at } of numbers) painted.number(text, at);
   pen.fillStyle = paint('var(--text)');
   if (axis === 2) {
     pen.textAlign = 'center';
     pen.textBaseline = 'bottom';
-    pen.fillText(kTitles[axis], to[0], to[1] - 1.5 * kGap_px);
+    painted.name(kTitles[axis], shifted(to, [0, -1], 1.5 * kGap_px), [0, -1]);
     return;
   }
   const widest_px = Math.max(...numbers.map(({ text }) => pen.measureText(text).width));
   const beside_px = Math.abs(outwards[0]) > kSlant ? widest_px + kGap_px : kLine_px;
   const middle: Pixel = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
-  pen.fillText(kTitles[axis], ...shifted(middle, outwards, kGap_px + beside_px));
+  painted.name(kTitles[axis], shifted(middle, outwards, kGap_px + beside_px), outwards);
 }
 
-/** The numbers of all edges: none covers an earlier one. */
-class Numbers {
-  private readonly places: { left: number; right: number; y: number }[] = [];
+interface Place {
+  left: number;
+  right: number;
+  /** Of its middle. */
+  y: number;
+}
+
+/** The numbers and names of all edges: none covers an earlier one. */
+class Texts {
+  private readonly places: Place[] = [];
 
   constructor(readonly pen: Pen) {}
 
-  paint(text: string, [x, y]: Pixel): void {
-    const { pen, places } = this;
+  /** Left out where it would cover something. */
+  number(text: string, at: Pixel): void {
+    if (this.isFree(this.placeOf(text, at))) this.paint(text, at);
+  }
+
+  /** Farther away where it would cover something. */
+  name(text: string, at: Pixel, outwards: Pixel): void {
+    let place = at;
+    const covers = () => !this.isFree(this.placeOf(text, place, kNameApart_px));
+    for (let i = 0; i < kMostSteps && covers(); i += 1) {
+      place = shifted(place, outwards, kStep_px);
+    }
+    this.paint(text, place);
+  }
+
+  private paint(text: string, at: Pixel): void {
+    this.pen.fillText(text, ...at);
+    this.places.push(this.placeOf(text, at));
+  }
+
+  private placeOf(text: string, [x, y]: Pixel, apart_px = kApart_px): Place {
+    const { pen } = this;
     const width_px = pen.measureText(text).width;
     const before = { left: 0, center: 0.5, right: 1 }[pen.textAlign as 'left' | 'center' | 'right'];
-    const left = x - before * width_px - kApart_px;
-    const right = left + width_px + 2 * kApart_px;
-    const covers = places.some(
-      (other) => left < other.right && other.left < right && Math.abs(y - other.y) < kLine_px,
+    const left = x - before * width_px - apart_px;
+    const right = left + width_px + 2 * apart_px;
+    return { left, right, y: y + (kMiddle_px[pen.textBaseline] ?? 0) };
+  }
+
+  private isFree({ left, right, y }: Place): boolean {
+    return this.places.every(
+      (other) => left >= other.right || other.left >= right || Math.abs(y - other.y) >= kLine_px,
     );
-    if (covers) return;
-    pen.fillText(text, x, y);
-    places.push({ left, right, y });
   }
 }
 
