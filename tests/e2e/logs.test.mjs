@@ -252,12 +252,14 @@ describe('flight logs', { skip, timeout: 900_000 }, () => {
     await page.locator(`[data-log="${name}"][aria-current=true]`).waitFor();
     await page.locator('[data-stream=GPS]').waitFor();
     await dashboard.screenshot('logs_csv_1280x800');
-    await page.locator(`[data-log="${name}"] .icon-button`).click();
+    await page.getByLabel(`Delete ${name}`).click();
+    await page.getByLabel(`Confirm the deletion of ${name}`).click();
     await page.locator(`[data-log="${name}"]`).waitFor({ state: 'detached' });
   });
 
   step('deletes the upload', async () => {
-    await page.locator('[data-log="uploads/my_flight.bin"] .icon-button').click();
+    await page.getByLabel('Delete uploads/my_flight.bin').click();
+    await page.getByLabel('Confirm the deletion of uploads/my_flight.bin').click();
     await page.locator('[data-log="uploads/my_flight.bin"]').waitFor({ state: 'detached' });
     assert.equal((await getJson(stage.server, '/logs')).uploads.used_bytes, 0);
   });

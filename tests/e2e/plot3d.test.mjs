@@ -67,7 +67,10 @@ describe('the 3D plot', { skip, timeout: 600_000 }, () => {
 
   /** Where the canvas of the lines has the colour of a variable of the style sheet [px of the page]. */
   const placesOf = async (colour) => {
-    const png = (await page.locator(`${kPanel} [data-role=plot3d-lines]`).screenshot()).toString('base64');
+    // The legend has the colours of the lines, and lies over them.
+    const style = '.plot3d-area .legend { visibility: hidden }';
+    const lines = page.locator(`${kPanel} [data-role=plot3d-lines]`);
+    const png = (await lines.screenshot({ style })).toString('base64');
     const places = await page.evaluate(
       async ([encoded, wanted]) => {
         const bytes = Uint8Array.from(atob(encoded), (letter) => letter.charCodeAt(0));
