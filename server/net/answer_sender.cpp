@@ -1,10 +1,14 @@
 #include "server/net/answer_sender.hpp"
 
+#include <boost/asio/write.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
 #include <cstddef>
 #include <memory>
+#include <string_view>
 #include <utility>
+
+#include "core/text/lower_case.hpp"
 
 namespace overfly::net {
 namespace {
@@ -66,6 +70,22 @@ void send_answer(beast::tcp_stream& stream,
                  std::chrono::milliseconds idle,
                  std::function<void(const error_code&)> done) {
   std::make_shared<AnswerSender>(stream, answer, idle, std::move(done))->send();
+}
+
+void invite_body(beast::tcp_stream& stream,
+                 const HttpRequest& request,
+                 std::chrono::milliseconds idle,
+                 std::function<void(const error_code&)> done) {
+  stream.expires_after(idle);
+  if (lower_case(request.header("expect")) != "100-continue") {
+    done({});
+    return;
+  }
+  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  boost::asio::async_write(
+      stream,
+      boost::asio::buffer(kContinue),
+      [done = std::move(done)](const error_code& error, std::size_t) { done(error); });
 }
 
 }  // namespace overfly::net

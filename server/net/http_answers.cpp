@@ -32,6 +32,13 @@ HttpAnswer http_answer(HttpResponse response, unsigned version, bool keep_alive,
   return answer;
 }
 
+HttpResponse too_many_viewers(std::size_t most) {
+  return error_response(
+      503,
+      "too_many_viewers",
+      std::to_string(most) + " viewers are connected, which is this server's limit");
+}
+
 std::optional<HttpResponse> answer_to_unreadable_request(const boost::beast::error_code& error,
                                                          std::uint64_t max_body_bytes) {
   if (error == http::error::body_limit) {

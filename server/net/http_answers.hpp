@@ -4,6 +4,7 @@
 #include <boost/beast/core/error.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -20,6 +21,9 @@ using HttpAnswer = boost::beast::http::response<boost::beast::http::string_body>
                                      unsigned version,
                                      bool keep_alive,
                                      bool head);
+
+/// @param most  viewers at once
+[[nodiscard]] HttpResponse too_many_viewers(std::size_t most);
 
 /// Empty if the connection is beyond an answer.
 [[nodiscard]] std::optional<HttpResponse> answer_to_unreadable_request(

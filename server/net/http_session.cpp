@@ -41,13 +41,6 @@ constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
 constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
 constexpr std::chrono::seconds kDrainLimit{2};
 
-HttpResponse too_many_viewers(std::size_t most) {
-  return error_response(
-      503,
-      "too_many_viewers",
-      std::to_string(most) + " viewers are connected, which is this server's limit");
-}
-
 class HttpSession final : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
@@ -91,6 +84,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession> {
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::response<http::string_body>> response_;
   HttpRequest request_;
+  std::string request_line_;  ///< method and target of the admitted request, for the log
   std::vector<char> drained_;
   std::size_t drained_bytes_ = 0;
   std::uint64_t request_number_ = 0;  ///< an answer with another number comes too late
@@ -162,6 +156,7 @@ void HttpSession::on_header(const error_code& error) {
     return;
   }
   admitted_ = true;
+  request_line_ = request_.method + " " + request_.target;
   if (context_->router.is_upload(request_)) {
     receive_body();
   } else {
@@ -213,13 +208,17 @@ void HttpSession::read_body() {
     return;
   }
   parser_->body_limit(limits.max_body_bytes);
-  stream_.expires_after(std::chrono::milliseconds(limits.idle_ms));
-  http::async_read(stream_,
-                   buffer_,
-                   *parser_,
-                   [self = shared_from_this()](const error_code& error, std::size_t) {
-                     self->attempt([&] { self->on_body(error); });
-                   });
+  invite_body(stream_,
+              request_,
+              std::chrono::milliseconds(limits.idle_ms),
+              [self = shared_from_this()](const error_code& error) {
+                if (error) return;
+                const auto done = [self](const error_code& failure, std::size_t) {
+                  self->attempt([&] { self->on_body(failure); });
+                };
+                self->attempt(
+                    [&] { http::async_read(self->stream_, self->buffer_, *self->parser_, done); });
+              });
 }
 
 void HttpSession::on_body(const error_code& error) {
@@ -322,6 +321,9 @@ void HttpSession::answer(std::uint64_t number, HttpResponse response) {
 }
 
 void HttpSession::write(HttpResponse response) {
+  if (!response.failure.empty()) {
+    context_->log("error", request_line_ + " failed: " + response.failure);
+  }
   if (admitted_ && place_) (void)place_->enter(ConnectionPhase::kSending);
   response_.emplace(http_answer(std::move(response), version_, keep_alive_, head_));
   send_answer(stream_,
@@ -374,10 +376,7 @@ void HttpSession::fail(const char* what) {
     end();
     return;
   }
-  attempt([this] {
-    write(
-        error_response({ErrorCode::kInternal, "internal error: the server's log has the reason"}));
-  });
+  attempt([this] { write(internal_error_response()); });
 }
 
 /// Closes at once, in any phase.

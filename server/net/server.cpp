@@ -73,7 +73,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   std::unique_ptr<Server> server(new Server());
   auto context = std::make_shared<ServerContext>(options, runs, views);
   add_service_routes(&context->router);
-  add_run_routes(&context->router, &runs);
+  add_run_routes(&context->router, &runs, &views);
   add_result_routes(&context->router, &runs);
   add_frame_routes(&context->router, &runs, &views);
   const ReadingRoutes readers{

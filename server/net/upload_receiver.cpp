@@ -1,18 +1,16 @@
 #include "server/net/upload_receiver.hpp"
 
 #include <boost/asio/post.hpp>
-#include <boost/asio/write.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
 #include <chrono>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/text/lower_case.hpp"
+#include "server/net/answer_sender.hpp"
 #include "server/net/http/error_response.hpp"
 
 namespace overfly::net {
@@ -62,23 +60,17 @@ class UploadReceiver final : public std::enable_shared_from_this<UploadReceiver>
   void on_stream(std::function<void()> action) {
     context_->deliver([&] { asio::post(stream_.get_executor(), action); });
   }
-  /// Clients that ask first whether the body is welcome wait for this (RFC 9110, section 10.1.1).
   void invite() {
-    if (lower_case(request_.header("expect")) != "100-continue") {
-      read();
-      return;
-    }
-    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-    stream_.expires_after(std::chrono::milliseconds(context_->options.limits.idle_ms));
-    asio::async_write(stream_,
-                      asio::buffer(kContinue),
-                      [self = shared_from_this()](const error_code& error, std::size_t) {
-                        if (error) {
-                          self->done_(std::nullopt, false);
-                        } else {
-                          self->read();
-                        }
-                      });
+    invite_body(stream_,
+                request_,
+                std::chrono::milliseconds(context_->options.limits.idle_ms),
+                [self = shared_from_this()](const error_code& error) {
+                  if (error) {
+                    self->done_(std::nullopt, false);
+                  } else {
+                    self->read();
+                  }
+                });
   }
   /// Receives the next piece.
   void read() {

@@ -108,17 +108,14 @@ std::shared_ptr<const void> ManagedRuns::hold_memory(const RunMemory& memory) {
 }
 
 Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
-                                     const std::string& idempotency_key,
+                                     const IdempotencyKey& key,
                                      StartReport& report) {
   if (Status fits = budget_.check(scenario); !fits) {
     report.refusal = StartReport::Refusal::kMemory;
     return fits.error();
   }
   const std::lock_guard lock(mutex_);
-  if (std::optional<RunInfo> earlier = info_by_key(idempotency_key)) {
-    report.repeated = true;
-    return *earlier;
-  }
+  if (std::optional<Result<RunInfo>> earlier = info_by_key(key, report)) return *earlier;
   if (queue_.size() >= options.max_waiting_runs) {
     report.refusal = StartReport::Refusal::kQueueFull;
     return Error{ErrorCode::kConflict,
@@ -134,23 +131,34 @@ Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
   run->timeline = std::make_shared<RunTimeline>(info, info.estimators);
   run->scenario = std::move(scenario);
   runs_[run->id] = run;
-  keys_.keep(idempotency_key, run->id, std::chrono::steady_clock::now());
+  keys_.keep(key, run->id, std::chrono::steady_clock::now());
   queue_.push_back(std::move(run));
   wake_.notify_all();
   return info;
 }
 
-std::optional<RunInfo> ManagedRuns::started_by(const std::string& idempotency_key) {
+std::optional<Result<RunInfo>> ManagedRuns::started_by(const IdempotencyKey& key,
+                                                       StartReport& report) {
   const std::lock_guard lock(mutex_);
-  return info_by_key(idempotency_key);
+  return info_by_key(key, report);
 }
 
-std::optional<RunInfo> ManagedRuns::info_by_key(const std::string& idempotency_key) {
-  const auto id = keys_.run_of(idempotency_key, std::chrono::steady_clock::now());
-  if (!id) return std::nullopt;
-  if (const auto timeline = timeline_of(*id)) return timeline->info();
-  const Result<RunInfo> info = index.run(*id);
-  return info ? std::optional<RunInfo>(*info) : std::nullopt;
+std::optional<Result<RunInfo>> ManagedRuns::info_by_key(const IdempotencyKey& key,
+                                                        StartReport& report) {
+  const auto start = keys_.start_of(key.text, std::chrono::steady_clock::now());
+  if (!start) return std::nullopt;
+  const auto timeline = timeline_of(start->run_id);
+  Result<RunInfo> info = timeline ? Result<RunInfo>(timeline->info()) : index.run(start->run_id);
+  // Another program has deleted the run.
+  if (!info) return std::nullopt;
+  if (start->body_digest != key.body_digest) {
+    report.refusal = StartReport::Refusal::kKeyUsed;
+    return Error{ErrorCode::kConflict,
+                 "Idempotency-Key = " + key.text + ": has started run \"" + start->run_id +
+                     "\" with another body"};
+  }
+  report.repeated = true;
+  return info;
 }
 
 RunList ManagedRuns::list() {
@@ -273,6 +281,8 @@ bool ManagedRuns::forget_unflown(const std::string& id) {
 
 Result<std::shared_ptr<RunTimeline>> ManagedRuns::shelved_timeline(const std::string& id) {
   auto timeline = shelf.get(id);
+  const bool damaged = !timeline && timeline.error().code == ErrorCode::kUnreadable;
+  index.set_fault(id, damaged ? timeline.error().message : "");
   if (!timeline) return timeline;
   const Result<RunInfo> listed = index.run(id);
   if (!listed) return timeline;

@@ -65,10 +65,10 @@ class ManagedRuns {
   [[nodiscard]] Status check_memory(const Scenario& scenario) const;
   [[nodiscard]] std::shared_ptr<const void> hold_memory(const RunMemory& memory);
   /// Errors: as RunManager::start, for a valid scenario.
-  Result<RunInfo> enqueue(Scenario scenario,
-                          const std::string& idempotency_key,
-                          StartReport& report);
-  [[nodiscard]] std::optional<RunInfo> started_by(const std::string& idempotency_key);
+  Result<RunInfo> enqueue(Scenario scenario, const IdempotencyKey& key, StartReport& report);
+  /// The run that the key has started, for the same request. Errors: kConflict for another one.
+  [[nodiscard]] std::optional<Result<RunInfo>> started_by(const IdempotencyKey& key,
+                                                          StartReport& report);
   /// All runs, including those of this process.
   [[nodiscard]] RunList list();
   /// For runs that are queued, fly, or ended without a folder.
@@ -108,7 +108,8 @@ class ManagedRuns {
   void drop(const std::shared_ptr<ManagedRun>& run, const char* reason) noexcept;
 
   // @pre for those below: mutex_ is held
-  [[nodiscard]] std::optional<RunInfo> info_by_key(const std::string& idempotency_key);
+  [[nodiscard]] std::optional<Result<RunInfo>> info_by_key(const IdempotencyKey& key,
+                                                           StartReport& report);
   [[nodiscard]] std::shared_ptr<RunTimeline> timeline_of(const std::string& id) const;
   [[nodiscard]] RunInfo info_of(const ManagedRun& run) const;
   /// Whether it is over and its folder has all of its data.

@@ -78,6 +78,7 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   if (manifest.exists) {
     if (Result<RunInfo> info = read_listed_run(folder_ / id); info) {
       info->world_change = entry.world_change;
+      if (info->problem.empty()) info->problem = entry.fault;
       entry.info = std::make_shared<const RunInfo>(std::move(*info));
     }
   }
@@ -149,6 +150,17 @@ void RunIndex::set_world_change(const std::string& id, const std::string& change
   entry->world_change = change;
   RunInfo info = *entry->info;
   info.world_change = change;
+  entry->info = std::make_shared<const RunInfo>(std::move(info));
+  unsorted_ = true;
+}
+
+void RunIndex::set_fault(const std::string& id, const std::string& fault) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = find(id);
+  if (entry == nullptr || entry->fault == fault) return;
+  RunInfo info = *entry->info;
+  if (info.problem == entry->fault) info.problem = fault;
+  entry->fault = fault;
   entry->info = std::make_shared<const RunInfo>(std::move(info));
   unsorted_ = true;
 }

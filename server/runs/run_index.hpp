@@ -36,6 +36,9 @@ class RunIndex {
   [[nodiscard]] Result<RunInfo> run(const std::string& id);
   /// Sets RunInfo::world_change of a run.
   void set_world_change(const std::string& id, const std::string& change);
+  /// Lists a fault that was found when the run's data were read (RunInfo::problem), if its manifest
+  /// has none; "" removes it.
+  void set_fault(const std::string& id, const std::string& fault);
 
  private:
   struct Entry {
@@ -46,6 +49,7 @@ class RunIndex {
     bool settled = false;
     std::shared_ptr<const RunInfo> info;  ///< null if there is no manifest
     std::string world_change;
+    std::string fault;
   };
   /// Both return whether anything has changed. @pre mutex_ is held
   bool look_for_folders(int descriptor);

@@ -7,6 +7,7 @@
 #include "server/record/comparison/compared_document.hpp"
 #include "server/record/run_info.hpp"
 #include "server/record/run_info_file.hpp"
+#include "server/record/run_lock.hpp"
 #include "server/record/run_manifest.hpp"
 #include "server/runs/listed_run.hpp"
 #include "server/runs/managed_runs.hpp"
@@ -53,26 +54,22 @@ Result<std::unique_ptr<RunManager>> RunManager::create(RunManagerOptions options
 
 Result<RunInfo> RunManager::start(const std::string& scenario,
                                   const std::vector<Override>& overrides,
-                                  const std::string& idempotency_key,
+                                  const IdempotencyKey& key,
                                   StartReport* report) {
   StartReport unasked;
   StartReport& filled = report != nullptr ? *report : unasked;
-  if (std::optional<RunInfo> earlier = impl_->started_by(idempotency_key)) {
-    filled.repeated = true;
-    return *earlier;
-  }
+  if (std::optional<Result<RunInfo>> earlier = impl_->started_by(key, filled)) return *earlier;
   Result<Scenario> loaded = impl_->library.load_to_fly(scenario, overrides);
   if (!loaded) return loaded.error();
-  return start(std::move(*loaded), idempotency_key, &filled);
+  return start(std::move(*loaded), key, &filled);
 }
 
 Result<RunInfo> RunManager::start(Scenario scenario,
-                                  const std::string& idempotency_key,
+                                  const IdempotencyKey& key,
                                   StartReport* report) {
   StartReport unasked;
   if (Status status = check_start(scenario); !status) return status.error();
-  return impl_->enqueue(
-      std::move(scenario), idempotency_key, report != nullptr ? *report : unasked);
+  return impl_->enqueue(std::move(scenario), key, report != nullptr ? *report : unasked);
 }
 
 Status RunManager::check_start(const Scenario& scenario) const {
@@ -159,6 +156,10 @@ Status RunManager::set_notes(const std::string& id, const RunNotes& notes) {
   }
   const Result<fs::path> place = folder(id);
   if (!place) return place.error();
+  if (RunLock::held(*place)) {
+    return Error{ErrorCode::kConflict,
+                 "run \"" + id + "\" has not ended: another process works on it"};
+  }
   const std::lock_guard lock(impl_->writing_notes);
   return write_notes(*place, notes);
 }

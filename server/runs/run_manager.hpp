@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/record/run_info.hpp"
+#include "server/runs/idempotency_keys.hpp"
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager_options.hpp"
 #include "server/runs/run_memory.hpp"
@@ -53,15 +54,15 @@ class RunManager {
 
   /// Starts (or queues) a run of a scenario with overrides. The same idempotency key returns the
   /// same run for a day.
-  /// Errors: kNotFound; kInvalidArgument with the invalid fields; kConflict if the queue is full;
-  /// kUnsupported if it needs more memory than there is.
+  /// Errors: kNotFound; kInvalidArgument with the invalid fields; kConflict if the queue is full,
+  /// or if the key belongs to another request; kUnsupported if it needs more memory than there is.
   [[nodiscard]] Result<RunInfo> start(const std::string& scenario,
                                       const std::vector<Override>& overrides,
-                                      const std::string& idempotency_key = "",
+                                      const IdempotencyKey& key = {},
                                       StartReport* report = nullptr);
   /// The same for a scenario that was read already, as by ScenarioLibrary::read.
   [[nodiscard]] Result<RunInfo> start(Scenario scenario,
-                                      const std::string& idempotency_key = "",
+                                      const IdempotencyKey& key = {},
                                       StartReport* report = nullptr);
   /// Whether the server may open the link of a live flight, and whether the parameters of native
   /// estimators are in order. Errors: as server::check_link and check_native_parameters.

@@ -47,7 +47,7 @@ struct DataFolders {
 struct StartReport {
   bool repeated = false;  ///< the idempotency key matched an earlier run
   /// Why a valid scenario is not flown now.
-  enum class Refusal { kNone, kQueueFull, kMemory } refusal = Refusal::kNone;
+  enum class Refusal { kNone, kQueueFull, kMemory, kKeyUsed } refusal = Refusal::kNone;
 };
 
 }  // namespace overfly::server

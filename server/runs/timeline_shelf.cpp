@@ -8,6 +8,17 @@
 
 namespace overfly::server {
 
+namespace {
+
+/// For its viewers, who keep what was read.
+void tell_deleted(RunTimeline& timeline) {
+  RunInfo info = timeline.info();
+  info.problem = "the run was deleted";
+  timeline.set_info(info);
+}
+
+}  // namespace
+
 TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
   Entry entry;
   entry.id = id;
@@ -18,6 +29,7 @@ TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
 
 bool TimelineShelf::is_fresh(Entry& entry) const {
   const FileStamp manifest = FileStamp::of(manifest_file(places_.of(entry.id)));
+  if (!manifest.exists) tell_deleted(*entry.timeline);
   if (!manifest.exists || manifest != entry.timeline->manifest_stamp()) return false;
   const Entry now = entry_of(entry.id);
   if (now.metrics == entry.metrics && entry.metrics_settled) return true;
@@ -78,7 +90,11 @@ void TimelineShelf::keep(Entry entry) {
 
 void TimelineShelf::forget(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(entries_, [&](const Entry& entry) { return entry.id == id; });
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (entry.id != id) return false;
+    tell_deleted(*entry.timeline);
+    return true;
+  });
 }
 
 void TimelineShelf::refresh() {

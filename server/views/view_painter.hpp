@@ -39,6 +39,8 @@ class ViewPainter {
   }
   /// Frees what is kept for a viewer that has gone.
   void forget(std::uint64_t viewer) { encoder_.forget(viewer); }
+  /// Closes the files of runs that were deleted.
+  void drop_deleted() { renderers_.drop_deleted(); }
 
  private:
   [[nodiscard]] Painted paint_of(const PictureRequest& request,

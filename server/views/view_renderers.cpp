@@ -109,4 +109,12 @@ Result<std::optional<ViewRenderers::Frames>> ViewRenderers::frames_of(const std:
   return std::optional(Frames{*found.renderer, *frames, *found.world});
 }
 
+void ViewRenderers::drop_deleted() {
+  for (WorldView& view : views_) {
+    for (WorldView::Watched& run : view.runs) {
+      if (run.frames && !runs_.folder(run.run_id)) run.frames.reset();
+    }
+  }
+}
+
 }  // namespace overfly::server

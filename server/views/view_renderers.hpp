@@ -50,6 +50,8 @@ class ViewRenderers {
   /// Valid until the next call; empty while the run's world is being opened.
   /// Errors: as of_run and FrameRemaker::create.
   [[nodiscard]] Result<std::optional<Frames>> frames_of(const std::string& run_id);
+  /// Closes the files of runs that were deleted.
+  void drop_deleted();
 
  private:
   /// Requests the ground below the run's flight, so that a jump in time finds it in memory.

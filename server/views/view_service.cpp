@@ -52,8 +52,10 @@ class AnsweredTask final : public ViewTask {
   Done done_;
 };
 
-/// The stream of the task below, which no picture has.
+/// The stream of the tasks below, which no picture has.
 constexpr int kNoStream = -1;
+/// Clients are counted from 1.
+constexpr std::uint64_t kNoClient = 0;
 
 /// Frees what the painter keeps for a client that has gone.
 class FarewellTask final : public ViewTask {
@@ -67,6 +69,15 @@ class FarewellTask final : public ViewTask {
 
  private:
   std::uint64_t client_;
+};
+
+class DropDeletedTask final : public ViewTask {
+ public:
+  bool run(ViewPainter& painter) override {
+    painter.drop_deleted();
+    return true;
+  }
+  void refuse(const Error& /*reason*/) override {}
 };
 
 Error outdated() { return {ErrorCode::kCancelled, "a newer picture was requested"}; }
@@ -233,6 +244,10 @@ void ViewService::forget(std::uint64_t client) {
     impl_->queue.forget(client);
   }
   impl_->push({client, kNoStream, std::make_unique<FarewellTask>(client)});
+}
+
+void ViewService::drop_deleted() {
+  impl_->push({kNoClient, kNoStream, std::make_unique<DropDeletedTask>()});
 }
 
 }  // namespace overfly::server

@@ -27,6 +27,8 @@ class ViewService {
   void probe(std::uint64_t client, int stream, const PixelRequest& request, PixelDone done);
   /// Drops the waiting requests of a client without calling their `done`.
   void forget(std::uint64_t client);
+  /// Closes the files of deleted runs, which otherwise keep their disk space. Does not wait.
+  void drop_deleted();
 
  private:
   struct Impl;

@@ -15,6 +15,7 @@
 #include "server/runs/run_index.hpp"
 #include "server/runs/run_manager.hpp"
 #include "server/scoring/run_metrics_json.hpp"
+#include "server/views/view_service.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly {
@@ -112,7 +113,8 @@ BENCHMARK(one_run)->Unit(benchmark::kMicrosecond);
 
 void ask(benchmark::State& state, const std::string& target) {
   net::RestRouter router;
-  net::add_run_routes(&router, &manager());
+  server::ViewService views(manager());
+  net::add_run_routes(&router, &manager(), &views);
   net::HttpRequest request;
   request.method = "GET";
   request.target = target;

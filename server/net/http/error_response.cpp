@@ -21,11 +21,12 @@ int status_of(ErrorCode code) {
       return 404;
     case ErrorCode::kConflict:
       return 409;
+    case ErrorCode::kUnreadable:
+    case ErrorCode::kUnsupported:
+      return 422;
     case ErrorCode::kCancelled:
       return 503;
-    case ErrorCode::kUnreadable:
     case ErrorCode::kIo:
-    case ErrorCode::kUnsupported:
     case ErrorCode::kTimeout:
     case ErrorCode::kInternal:
       return 500;
@@ -91,7 +92,13 @@ HttpResponse error_response(const Error& error) {
     json field_errors = field_errors_of(error.message);
     if (!field_errors.empty()) body["faults"] = std::move(field_errors);
   }
-  return json_response(status_of(error.code), {{"error", std::move(body)}});
+  HttpResponse response = json_response(status_of(error.code), {{"error", std::move(body)}});
+  if (response.status == 500) response.failure = error.message;
+  return response;
+}
+
+HttpResponse internal_error_response() {
+  return error_response(500, "internal", "internal error: the server's log has the reason");
 }
 
 HttpResponse error_response(int status, const std::string& code, const std::string& message) {

@@ -13,6 +13,8 @@ namespace overfly::net {
 /// {"error": {"code", "message"}}; invalid fields ("field = value: must be limit", one a line) are
 /// also listed as {"field", "message"} under `faults`.
 [[nodiscard]] HttpResponse error_response(const Error& error);
+/// The answer to a request during which an exception was caught and logged.
+[[nodiscard]] HttpResponse internal_error_response();
 /// As above, for a status without an ErrorCode: 403, 405, 413, 415, 422, 426, 429.
 [[nodiscard]] HttpResponse error_response(int status,
                                           const std::string& code,

@@ -31,6 +31,8 @@ struct HttpResponse {
   std::string content_type;
   std::vector<std::pair<std::string, std::string>> headers;
   std::string body;
+  /// What the server's log must say of a failure of the server; not sent.
+  std::string failure{};
 };
 
 /// Called once, from any thread, with the response to a request.

@@ -41,15 +41,18 @@ HttpResponse method_not_allowed(const std::string& method, const std::set<std::s
   return response;
 }
 
-Status check_query(const std::map<std::string, std::string>& query,
-                   const std::vector<std::string>& known) {
+Status check_query(const Url& url, const std::vector<std::string>& known) {
   std::string names;
   for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  for (const auto& [name, value] : query) {
+  for (const auto& [name, value] : url.query) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     return Error{ErrorCode::kInvalidArgument,
                  "query." + name + ": is not a known parameter; there " +
                      (names.empty() ? "are none here" : "are: " + names)};
+  }
+  if (url.repeated) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "query." + *url.repeated + ": must be given at most once"};
   }
   return {};
 }
@@ -114,7 +117,7 @@ void RestRouter::receive(const HttpRequest& request,
     for (const Route& route : routes_) {
       auto path = route.receiver ? match(route.segments, url->segments) : std::nullopt;
       if (!path) continue;
-      if (const Status status = check_query(url->query, route.query); !status) {
+      if (const Status status = check_query(*url, route.query); !status) {
         *answer = error_response(status.error());
         return;
       }
@@ -132,10 +135,7 @@ void RestRouter::receive(const HttpRequest& request,
 }
 
 void RestRouter::handle(const HttpRequest& request, const Respond& respond) const noexcept {
-  const auto refuse = [&] {
-    respond(
-        error_response({ErrorCode::kInternal, "internal error: the server's log has the reason"}));
-  };
+  const auto refuse = [&] { respond(internal_error_response()); };
   const auto refuse_briefly = [&](const char*) {
     HttpResponse response;
     response.status = 500;
@@ -166,7 +166,7 @@ void RestRouter::find_and_handle(const HttpRequest& request, const Respond& resp
     auto captures = match(route.segments, url->segments);
     if (!captures) continue;
     if (route.method == method && route.handler) {
-      if (const Status status = check_query(url->query, route.query); !status) {
+      if (const Status status = check_query(*url, route.query); !status) {
         respond(error_response(status.error()));
         return;
       }

@@ -23,7 +23,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-bool parse_query(std::string_view text, std::map<std::string, std::string>* query) {
+bool parse_query(std::string_view text, Url* url) {
   for (const std::string_view part : split(text, '&')) {
     if (part.empty()) continue;
     const std::size_t equals = std::min(part.find('='), part.size());
@@ -31,7 +31,7 @@ bool parse_query(std::string_view text, std::map<std::string, std::string>* quer
     const auto value =
         percent_decode(equals < part.size() ? part.substr(equals + 1) : std::string_view(), true);
     if (!name || !value) return false;
-    (*query)[*name] = *value;
+    if (!url->query.insert_or_assign(*name, *value).second) url->repeated = *name;
   }
   return true;
 }
@@ -83,7 +83,7 @@ std::optional<Url> parse_target(std::string_view target) {
   const std::size_t fragment = target.find('#');
   target = target.substr(0, fragment);
   const std::size_t question = std::min(target.find('?'), target.size());
-  if (question < target.size() && !parse_query(target.substr(question + 1), &url.query)) {
+  if (question < target.size() && !parse_query(target.substr(question + 1), &url)) {
     return std::nullopt;
   }
   const std::string_view path = target.substr(1, question - 1);

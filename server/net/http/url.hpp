@@ -12,6 +12,7 @@ namespace overfly::net {
 struct Url {
   std::vector<std::string> segments;         ///< decoded; "/" has none, "/a/" has "a" and ""
   std::map<std::string, std::string> query;  ///< decoded; the last one of equal names is kept
+  std::optional<std::string> repeated{};     ///< a name that occurs several times in the query
 };
 
 /// Empty for a target that is not an absolute path, or has an invalid percent escape or a NUL.

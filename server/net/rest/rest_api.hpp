@@ -26,7 +26,7 @@ void add_scenario_routes(RestRouter* router,
                          server::RunManager* runs,
                          const ReadingRoutes& readers);
 /// runs, runs/{id}, runs/{id}/cancel, runs/{id}/notes
-void add_run_routes(RestRouter* router, server::RunManager* runs);
+void add_run_routes(RestRouter* router, server::RunManager* runs, server::ViewService* views);
 /// differences
 void add_difference_routes(RestRouter* router,
                            server::RunManager* runs,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/barrier.hpp"
+#include "core/text/lower_case.hpp"
 #include "core/time.hpp"
 #include "server/net/http/error_response.hpp"
 
@@ -28,22 +29,17 @@ Status read_time(const RouteCall& call, const std::string& name, std::optional<s
 }
 
 HttpResponse answer_of(Result<HttpResponse> result) {
-  if (result) return std::move(*result);
-  // The file is the client's choice: that it cannot be read is no failure of the server.
-  if (result.error().code == ErrorCode::kUnreadable) {
-    return error_response(422, "unreadable", result.error().message);
-  }
-  if (result.error().code == ErrorCode::kUnsupported) {
-    return error_response(422, "unsupported", result.error().message);
-  }
-  return error_response(result.error());
+  return result ? std::move(*result) : error_response(result.error());
 }
 
 }  // namespace
 
 std::optional<HttpResponse> not_json(const HttpRequest& request) {
-  const std::string type = request.header("content-type");
-  if (type == "application/json" || type.starts_with("application/json;")) return std::nullopt;
+  // The case of a media type has no meaning; blanks may stand before its parameters (RFC 9110,
+  // sections 8.3.1 and 5.6.6).
+  std::string type = lower_case(request.header("content-type"));
+  type = type.substr(0, type.find_first_of("; \t"));
+  if (type == "application/json") return std::nullopt;
   return error_response(415, "unsupported_media_type", "the body must be application/json");
 }
 
@@ -94,8 +90,7 @@ void respond_from_reader(const ReadingRoutes& routes,
     (void)contained([&] { respond(answer_of(read(abandoned.get()))); },
                     [&](const char* reason) {
                       report("reading " + what + " failed: " + reason);
-                      respond(error_response({ErrorCode::kInternal,
-                                              "internal error: the server's log has the reason"}));
+                      respond(internal_error_response());
                     });
   };
   const bool taken = routes.read(work, call.request.abandoned);

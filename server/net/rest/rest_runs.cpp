@@ -1,3 +1,4 @@
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -53,6 +54,9 @@ HttpResponse start_refusal(const server::StartReport& report, const Error& error
   if (report.refusal == Refusal::kQueueFull) {
     return error_response(429, "queue_full", error.message);
   }
+  if (report.refusal == Refusal::kKeyUsed) {
+    return error_response(422, "idempotency_key_used", error.message);
+  }
   if (report.refusal == Refusal::kMemory) {
     return error_response(422, "not_enough_memory", error.message);
   }
@@ -61,7 +65,7 @@ HttpResponse start_refusal(const server::StartReport& report, const Error& error
 
 Result<server::RunInfo> start_document(RunManager& runs,
                                        const json& document,
-                                       const std::string& key,
+                                       const server::IdempotencyKey& key,
                                        server::StartReport* report) {
   Result<server::Scenario> scenario = runs.library().read_to_fly(document);
   if (!scenario) return scenario.error();
@@ -70,8 +74,9 @@ Result<server::RunInfo> start_document(RunManager& runs,
 
 HttpResponse start_run(RunManager* runs, const HttpRequest& request) {
   if (auto refused = not_json(request)) return std::move(*refused);
-  const std::string key = request.header("idempotency-key");
-  if (key.size() > kMaxKeyBytes) {
+  const server::IdempotencyKey key{request.header("idempotency-key"),
+                                   std::hash<std::string>()(request.body)};
+  if (key.text.size() > kMaxKeyBytes) {
     return error_response(
         {ErrorCode::kInvalidArgument,
          "Idempotency-Key: must have at most " + std::to_string(kMaxKeyBytes) + " characters"});
@@ -157,7 +162,7 @@ HttpResponse set_notes(RunManager* runs, const std::string& id, const HttpReques
 
 }  // namespace
 
-void add_run_routes(RestRouter* router, RunManager* runs) {
+void add_run_routes(RestRouter* router, RunManager* runs, server::ViewService* views) {
   const auto texts = std::make_shared<RunListText>();
   router->add("GET", "/api/v1/runs", [runs, texts](const RouteCall&, const Respond& respond) {
     respond(list_runs(runs, *texts));
@@ -177,12 +182,14 @@ void add_run_routes(RestRouter* router, RunManager* runs) {
       "PUT", "/api/v1/runs/{id}/notes", [runs](const RouteCall& call, const Respond& respond) {
         respond(set_notes(runs, call.path.at("id"), call.request));
       });
-  router->add("DELETE", "/api/v1/runs/{id}", [runs](const RouteCall& call, const Respond& respond) {
-    const Status status = runs->remove(call.path.at("id"));
-    HttpResponse gone;
-    gone.status = 204;
-    respond(status ? gone : error_response(status.error()));
-  });
+  router->add(
+      "DELETE", "/api/v1/runs/{id}", [runs, views](const RouteCall& call, const Respond& respond) {
+        const Status status = runs->remove(call.path.at("id"));
+        if (status) views->drop_deleted();
+        HttpResponse gone;
+        gone.status = 204;
+        respond(status ? gone : error_response(status.error()));
+      });
 }
 
 }  // namespace overfly::net

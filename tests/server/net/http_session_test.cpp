@@ -10,6 +10,7 @@
 namespace overfly::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -39,6 +40,16 @@ TEST(HttpSession, RefusesHeadersThatAreTooLarge) {
   const std::string request =
       "GET / HTTP/1.1\r\nHost: localhost\r\nX-Long: " + std::string(20'000, 'x') + "\r\n\r\n";
   EXPECT_THAT(exchange_raw(server.port(), request), StartsWith("HTTP/1.1 431"));
+}
+
+TEST(HttpSession, InvitesTheBodyOfAClientThatWaitsForThat) {
+  const TestServer server;
+  const std::string header =
+      "POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+      "Expect: 100-continue\r\nConnection: close\r\nContent-Length: ";
+  EXPECT_THAT(exchange_raw(server.port(), header + "1\r\n\r\n{"),
+              AllOf(StartsWith("HTTP/1.1 100 Continue\r\n\r\n"), HasSubstr("HTTP/1.1 400")));
+  EXPECT_THAT(exchange_raw(server.port(), header + "2000000\r\n\r\n"), StartsWith("HTTP/1.1 413"));
 }
 
 TEST(HttpSession, SurvivesMalformedRequests) {

@@ -16,6 +16,11 @@ TEST(Url, SplitsPathAndQuery) {
   EXPECT_EQ(url->query.at("flag"), "");
 }
 
+TEST(Url, NamesAParameterThatIsGivenTwice) {
+  EXPECT_EQ(parse_target("/a?x=1&y=2&%78=1")->repeated, "x");
+  EXPECT_FALSE(parse_target("/a?x=1&y=1")->repeated);
+}
+
 TEST(Url, DecodesInsideSegmentsOnly) {
   EXPECT_EQ(parse_target("/a%2Fb/c")->segments, (Segments{"a/b", "c"}));
   EXPECT_EQ(parse_target("/a+b")->segments, (Segments{"a+b"}));

@@ -204,7 +204,7 @@ TEST_F(RunFailureOfManager, RunThatNeedsTooMuchMemoryIsRefused) {
   const auto runs = std::move(RunManager::create(little).value());
   StartReport report;
   const auto refused =
-      runs->start("small", {{"camera.width_px", 4096}, {"camera.height_px", 4096}}, "", &report);
+      runs->start("small", {{"camera.width_px", 4096}, {"camera.height_px", 4096}}, {}, &report);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(report.refusal, StartReport::Refusal::kMemory);
   EXPECT_TRUE(fs::is_empty(root() / "runs"));

@@ -56,9 +56,9 @@ TEST_F(RunLimitsTest, RunsThatWaitHaveALimit) {
   const std::string first = runs->start("small", endless()).value().id;
   wait_for_first_frame(*runs->timeline(first).value());
   StartReport report;
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(runs->start("small", {}, "", &report).ok());
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(runs->start("small", {}, {}, &report).ok());
   EXPECT_EQ(report.refusal, StartReport::Refusal::kNone);
-  const auto refused = runs->start("small", {}, "", &report);
+  const auto refused = runs->start("small", {}, {}, &report);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(report.refusal, StartReport::Refusal::kQueueFull);
   EXPECT_THAT(refused.error().message, HasSubstr("waiting runs = 3: must be below 3"));
@@ -163,42 +163,49 @@ TEST_F(RunLimitsTest, RunsThatWaitLeaveNoFolderWhenTheServerStops) {
   }
 }
 
+std::optional<std::string> run_of(IdempotencyKeys& keys,
+                                  const std::string& key,
+                                  IdempotencyKeys::Time now) {
+  const auto start = keys.start_of(key, now);
+  return start ? std::optional(start->run_id) : std::nullopt;
+}
+
 TEST(IdempotencyKeys, LeaveByNumberAndAge) {
   using namespace std::chrono_literals;
   IdempotencyKeys keys;
   const IdempotencyKeys::Time start{};
   for (std::size_t i = 0; i < IdempotencyKeys::kMostKeys; ++i) {
-    keys.keep(std::to_string(i), "run" + std::to_string(i), start);
+    keys.keep({std::to_string(i)}, "run" + std::to_string(i), start);
   }
-  EXPECT_EQ(keys.run_of("0", start), "run0") << "asked for: it stays";
-  keys.keep("one more", "run", start + 1h);
+  EXPECT_EQ(run_of(keys, "0", start), "run0") << "asked for: it stays";
+  keys.keep({"one more"}, "run", start + 1h);
   EXPECT_EQ(keys.size(), IdempotencyKeys::kMostKeys);
-  EXPECT_EQ(keys.run_of("1", start), std::nullopt) << "the one asked for least lately";
-  EXPECT_EQ(keys.run_of("0", start), "run0");
-  EXPECT_EQ(keys.run_of("0", start + IdempotencyKeys::kOldest), std::nullopt);
-  EXPECT_EQ(keys.run_of("one more", start + IdempotencyKeys::kOldest), "run");
+  EXPECT_EQ(run_of(keys, "1", start), std::nullopt) << "the one asked for least lately";
+  EXPECT_EQ(run_of(keys, "0", start), "run0");
+  EXPECT_EQ(run_of(keys, "0", start + IdempotencyKeys::kOldest), std::nullopt);
+  EXPECT_EQ(run_of(keys, "one more", start + IdempotencyKeys::kOldest), "run");
   EXPECT_EQ(keys.size(), 1U);
   keys.forget_run("run");
-  EXPECT_EQ(keys.run_of("one more", start), std::nullopt);
-  keys.keep("", "run", start);
+  EXPECT_EQ(run_of(keys, "one more", start), std::nullopt);
+  keys.keep({""}, "run", start);
   EXPECT_EQ(keys.size(), 0U) << "an empty key is none";
-  keys.keep("k", "a", start);
-  keys.keep("k", "b", start);
-  EXPECT_EQ(keys.run_of("k", start), "b");
+  keys.keep({"k"}, "a", start);
+  keys.keep({"k"}, "b", start);
+  EXPECT_EQ(run_of(keys, "k", start), "b");
   EXPECT_EQ(keys.size(), 1U);
 }
 
 TEST_F(RunLimitsTest, KeyOfADeletedRunGivesAnother) {
   const auto runs = manager();
   StartReport report;
-  const std::string id = runs->start("small", {}, "k", &report).value().id;
+  const std::string id = runs->start("small", {}, {"k"}, &report).value().id;
   EXPECT_FALSE(report.repeated);
   wait_for_end(*runs, id);
-  EXPECT_EQ(runs->start("small", {}, "k", &report).value().id, id);
+  EXPECT_EQ(runs->start("small", {}, {"k"}, &report).value().id, id);
   EXPECT_TRUE(report.repeated);
   ASSERT_TRUE(runs->remove(id).ok());
   report = {};
-  const std::string other = runs->start("small", {}, "k", &report).value().id;
+  const std::string other = runs->start("small", {}, {"k"}, &report).value().id;
   EXPECT_NE(other, id);
   EXPECT_FALSE(report.repeated);
   wait_for_end(*runs, other);

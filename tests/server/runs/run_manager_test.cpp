@@ -156,9 +156,9 @@ TEST_F(RunManagerTest, FliesAScenarioAndFindsItAgainInANewProcess) {
 
 TEST_F(RunManagerTest, SameIdempotencyKeyGivesTheSameRun) {
   const auto runs = manager();
-  const std::string first = runs->start("small", {}, "k").value().id;
-  EXPECT_EQ(runs->start("small", {}, "k").value().id, first);
-  const std::string other = runs->start("small", {}, "k2").value().id;
+  const std::string first = runs->start("small", {}, {"k"}).value().id;
+  EXPECT_EQ(runs->start("small", {}, {"k"}).value().id, first);
+  const std::string other = runs->start("small", {}, {"k2"}).value().id;
   EXPECT_NE(other, first);
   wait_for_end(*runs, other);
 }
@@ -227,6 +227,7 @@ TEST_F(RunManagerTest, RunThatAnotherProcessWritesIsRunningAndStays) {
   const RunLock lock = std::move(RunLock::take(other)).value();
   EXPECT_EQ(runs->timeline("other").value()->info().status, RunStatus::kRunning);
   EXPECT_EQ(runs->remove("other").error().code, ErrorCode::kConflict);
+  EXPECT_EQ(runs->set_notes("other", {}).error().code, ErrorCode::kConflict);
   EXPECT_EQ(RunLock::take(other).error().code, ErrorCode::kConflict);
 }
 

@@ -90,6 +90,8 @@ class ViewRenderersTest : public testing::ManagerTest {
          opened_.set_value();
        },
        [] { return ThreadPriority::kBelowFlights; }}};
+
+ protected:
   ViewRenderers renderers_{*runs_, opener_, stopping_};
 };
 
@@ -106,6 +108,19 @@ TEST_F(ViewRenderersTest, GroundBelowADamagedWorldIsNotReadAheadAgain) {
   EXPECT_TRUE(view_of(id).runs.front().scenes_expected);
   // Another run over these files is read ahead for.
   EXPECT_GT(read_ahead(view_of(fly(*runs_))), 0);
+}
+
+TEST_F(ViewRenderersTest, FilesOfADeletedRunAreClosed) {
+  const std::string deleted = fly(*runs_);
+  const std::string kept = fly(*runs_);
+  for (const std::string& id : {deleted, kept}) {
+    (void)view_of(id);
+    ASSERT_TRUE(renderers_.frames_of(id).value());
+  }
+  ASSERT_TRUE(runs_->remove(deleted).ok());
+  renderers_.drop_deleted();
+  EXPECT_FALSE(view_of(deleted).runs.front().frames);
+  EXPECT_TRUE(view_of(kept).runs.front().frames);
 }
 
 }  // namespace

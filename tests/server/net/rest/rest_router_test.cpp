@@ -64,6 +64,9 @@ TEST(RestRouter, RefusesParametersThatTheRouteDoesNotKnow) {
   EXPECT_EQ(wrong.status, 400);
   EXPECT_NE(wrong.body.find("query.seize"), std::string::npos);
   EXPECT_NE(wrong.body.find("size, camera"), std::string::npos);
+  const HttpResponse twice = ask(router, "GET", "/pictures?size=big&size=small");
+  EXPECT_EQ(twice.status, 400);
+  EXPECT_NE(twice.body.find("query.size: must be given at most once"), std::string::npos);
   EXPECT_EQ(ask(router, "GET", "/runs/a?x=1").status, 400);
   EXPECT_EQ(ask(router, "DELETE", "/runs/a?x=1").status, 400);
 }

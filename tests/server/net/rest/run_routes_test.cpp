@@ -194,6 +194,53 @@ TEST(RunRoutes, DamagedRunIsListedWithItsProblem) {
   EXPECT_EQ(ask(server.port(), "GET", "/api/v1/health").status, 200);
 }
 
+/// Damage in rows is found when they are read.
+TEST(RunRoutes, DamagedRowsAreTheRunsProblemAndNoFailureOfTheServer) {
+  TestServer server;
+  const fs::path runs = server.folder() / "runs";
+  fs::copy(runs / server.fly("tiny"), runs / "damaged", fs::copy_options::recursive);
+  const fs::path rows = server::CameraFiles::of_main_camera(runs / "damaged").rows();
+  const std::string whole = read_text(rows);
+  std::string changed = whole;
+  changed.replace(changed.find("\"frame\":5"), 9, "\"frame\":\"x\"");
+  write_text(rows, changed);
+  const std::string run = std::string(kRuns) + "/damaged";
+  for (const char* part :
+       {"/metrics", "/estimators", "/trajectories/truth?format=json", "/frames/3.jpg"}) {
+    const Answer refused = ask(server.port(), "GET", run + part);
+    EXPECT_EQ(refused.status, 422) << part;
+    EXPECT_EQ(refused.json().at("error").at("code"), "unreadable");
+  }
+  const auto shown = [&] { return ask(server.port(), "GET", run).json(); };
+  EXPECT_THAT(shown().at("problem").get<std::string>(), HasSubstr("frames.jsonl"));
+  EXPECT_EQ(shown().at("status"), "completed");
+  write_text(rows, whole);
+  EXPECT_EQ(ask(server.port(), "GET", run + "/metrics").status, 200);
+  EXPECT_TRUE(shown().at("problem").is_null());
+}
+
+TEST(RunRoutes, FailureOfTheServerIsLogged) {
+  TestServer server;
+  const std::string run = std::string(kRuns) + "/" + server.fly("tiny");
+  fs::create_directories(server.folder() / "runs" / run.substr(run.rfind('/') + 1) / "notes.json");
+  const json notes = {{"tags", json::array()}, {"note", "cannot be kept"}};
+  EXPECT_EQ(ask(server.port(), "PUT", run + "/notes", notes.dump(), kJson).status, 500);
+  server.wait_for_log("PUT " + run + "/notes failed: ");
+}
+
+TEST(RunRoutes, ViewersOfADeletedRunAreTold) {
+  TestServer server;
+  const std::string id = server.fly("tiny");
+  WebSocketClient viewer(server.port());
+  EXPECT_EQ(viewer.command({{"type", "watch"}, {"run", id}}).at("type"), "ok");
+  viewer.wait_for("run");
+  EXPECT_EQ(ask(server.port(), "DELETE", std::string(kRuns) + "/" + id).status, 204);
+  const json told = viewer.wait_until([](const json& message) {
+    return message.at("type") == "run" && message.at("run").at("problem") == "the run was deleted";
+  });
+  EXPECT_EQ(told.at("run").at("id"), id);
+}
+
 /// Metrics that `overfly evaluate` has written are served, and viewers are notified.
 TEST(RunRoutes, NewMetricsAreServedAndSentToViewers) {
   TestServer server;

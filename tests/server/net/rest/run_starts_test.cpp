@@ -147,6 +147,13 @@ TEST_F(RunStartsTest, GivesTheSameRunForTheSameKey) {
   const std::string id = post(201).json().at("id");
   EXPECT_EQ(post(200).json().at("id"), id);
   EXPECT_EQ(server_.runs().runs().size(), 1U);
+  // Whatever it asks for: it was not this.
+  for (const char* other :
+       {R"({"scenario":"tiny","overrides":{"seed":8}})", R"({"scenario":"none"})"}) {
+    const Answer refused = check("POST", "/api/v1/runs", "/api/v1/runs", 422, other, headers);
+    EXPECT_EQ(refused.json().at("error").at("code"), "idempotency_key_used");
+    EXPECT_THAT(refused.body, HasSubstr(id));
+  }
   headers["Idempotency-Key"] = "twice";
   EXPECT_NE(post(201).json().at("id"), id);
   headers["Idempotency-Key"] = std::string(300, 'k');
@@ -161,6 +168,10 @@ TEST_F(RunStartsTest, RefusesOtherMethodsBodiesAndOrigins) {
   EXPECT_EQ(ask(server_.port(), "GET", "/api/v1/stream").status, 426);
   const std::string runs = "/api/v1/runs";
   check("POST", runs, runs, 415, TestServer::body_of("tiny"), {{"Content-Type", "text/plain"}});
+  // The case of a media type has no meaning.
+  for (const char* type : {"APPLICATION/JSON", "Application/Json; Charset=UTF-8"}) {
+    check("POST", runs, runs, 400, "{", {{"Content-Type", type}});
+  }
   check("POST", runs, runs, 413, std::string((1 << 20) + 1, ' '), kJson);
   check("POST", runs, runs, 400, "{", kJson);
   const std::string start = R"({"scenario":"tiny","overrides":{)";
