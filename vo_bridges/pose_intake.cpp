@@ -42,6 +42,7 @@ Status PoseIntake::take(VoEstimate& estimate) {
     }
     sample.scene_depth.reset();
   }
+  drop_points_not_finite(estimate);
   if (fault.empty()) {
     in_a_row_ = 0;
     take_covariance(estimate);
@@ -80,6 +81,14 @@ void PoseIntake::take_covariance(VoEstimate& estimate) {
   notes_.push_back("warning: frame " + std::to_string(sample.frame) +
                    ": covariance: " + covariance.error().message +
                    "; this and later such covariances are left out and counted");
+}
+
+void PoseIntake::drop_points_not_finite(VoEstimate& estimate) {
+  const std::size_t dropped = std::erase_if(
+      estimate.map_points_vo, [](const Eigen::Vector3f& point) { return !point.allFinite(); });
+  if (dropped == 0 || std::exchange(points_noted_, true)) return;
+  notes_.push_back("warning: frame " + std::to_string(estimate.sample.frame) +
+                   ": a map point is not finite: this and later such points are left out");
 }
 
 void PoseIntake::note(const EstimateSample& sample, const std::string& fault) {

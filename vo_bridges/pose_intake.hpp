@@ -26,7 +26,7 @@ class PoseIntake {
   /// Sets an answer with an invalid pose (VoEstimate::pose_fault, or found here) to LOST and adds a
   /// note. Normalises the quaternion of a valid pose. Drops a scene depth that is not positive and
   /// finite. Moves a valid covariance to the sample; marks the sample if it is invalid. Values that
-  /// are all 0 state no covariance.
+  /// are all 0 state no covariance. Drops map points that are not finite.
   /// Errors: kInternal with the last reason after kMostInARow consecutive answers with invalid
   /// poses.
   [[nodiscard]] Status take(VoEstimate& estimate);
@@ -36,11 +36,13 @@ class PoseIntake {
  private:
   void note(const EstimateSample& sample, const std::string& fault);
   void take_covariance(VoEstimate& estimate);
+  void drop_points_not_finite(VoEstimate& estimate);
 
   int in_a_row_ = 0;
   int notes_made_ = 0;
   bool depth_noted_ = false;
   bool covariance_noted_ = false;
+  bool points_noted_ = false;
   std::vector<std::string> notes_;
 };
 

@@ -83,6 +83,19 @@ TEST(PoseIntake, LeavesOutADepthThatIsNoneAndSaysSoOnce) {
   EXPECT_THAT(poses.take_notes(), ElementsAre(HasSubstr("warning: frame 4: scene depth = ")));
 }
 
+TEST(PoseIntake, LeavesOutAMapPointThatIsNotFiniteAndSaysSoOnce) {
+  PoseIntake poses;
+  const Eigen::Vector3f far(1.0F, 2.0F, std::numeric_limits<float>::infinity());
+  for (int i = 4; i < 6; ++i) {
+    VoEstimate odd = answer(i);
+    odd.map_points_vo = {{1.0F, 2.0F, 3.0F}, far};
+    EXPECT_TRUE(poses.take(odd));
+    EXPECT_EQ(odd.sample.state, TrackingState::kTracking);
+    EXPECT_THAT(odd.map_points_vo, ElementsAre(Eigen::Vector3f(1.0F, 2.0F, 3.0F)));
+  }
+  EXPECT_THAT(poses.take_notes(), ElementsAre(HasSubstr("warning: frame 4: a map point is not")));
+}
+
 TEST(PoseIntake, GivesUpAfterManyInARow) {
   PoseIntake poses;
   for (int i = 0; i < 10 * PoseIntake::kMostInARow; ++i) {

@@ -565,7 +565,11 @@ inline void add_samples(const std::string& payload, Frame* frame) {
   });
 }
 
-inline void send_debug(Connection& connection, const Frame& frame, const Answer& answer) {
+/// @param not_finite  set if a map point is left out because it is not finite
+inline void send_debug(Connection& connection,
+                       const Frame& frame,
+                       const Answer& answer,
+                       std::string* not_finite) {
   const DebugImage& image = answer.debug_image;
   if (!image.pixels.empty()) {
     std::string payload;
@@ -577,14 +581,21 @@ inline void send_debug(Connection& connection, const Frame& frame, const Answer&
     connection.send(kDebugImage, payload);
   }
   if (!answer.map_points.empty()) {
+    std::string points;
+    std::uint32_t count = 0;
+    for (const auto& point : answer.map_points) {
+      if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2])) {
+        *not_finite = "a map point";
+        continue;
+      }
+      for (const float value : point) put<float>(&points, value);
+      ++count;
+    }
     std::string payload;
     put<std::int64_t>(&payload, frame.index);
-    put<std::uint32_t>(&payload, static_cast<std::uint32_t>(answer.map_points.size()));
+    put<std::uint32_t>(&payload, count);
     put<std::uint32_t>(&payload, 0);
-    for (const auto& point : answer.map_points) {
-      for (const float value : point) put<float>(&payload, value);
-    }
-    connection.send(kMapPoints, payload);
+    connection.send(kMapPoints, payload + points);
   }
 }
 
@@ -643,8 +654,8 @@ inline void answer_frame(Estimator& estimator,
       frame.pixels,
       static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px));
   const Answer answer = estimator.track(frame);
-  if (frame.debug_wanted) send_debug(connection, frame, answer);
   std::string not_finite;
+  if (frame.debug_wanted) send_debug(connection, frame, answer, &not_finite);
   const std::string answered = payload_of(answer, frame.index, crc32, &not_finite);
   if (!not_finite.empty() && connection.first_not_finite()) {
     log_line(connection,

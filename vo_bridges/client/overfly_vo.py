@@ -123,6 +123,7 @@ class Estimator:
 # Implementation.
 _HELLO, _READY, _CALIBRATION, _FRAME, _ANSWER, _DEBUG_IMAGE = 1, 2, 3, 4, 5, 6
 _MAP_POINTS, _PARAMETERS, _LOG, _STOP, _SENSORS = 7, 8, 9, 11, 12
+_LARGEST_FLOAT = 3.4028234663852886e38  # of 32 bits
 _HEADER = struct.Struct("<4sHHI")
 _FRAME_HEAD = struct.Struct("<qqqIIIIII")
 _IMU = struct.Struct("<q6d")
@@ -245,14 +246,25 @@ def _covariance_text(covariance):
     return f"covariance {' '.join(map(repr, values))}\n" if values else ""
 
 
+def _warn_not_finite(connection, what):
+    if not connection.not_finite_seen:
+        connection.not_finite_seen = True
+        connection.send(_LOG, struct.pack("<I", WARNING) + (
+            f"{what} is not finite: this and later such values are ignored").encode())
+
+
 def _send_answer(connection, frame, answer, crc32):
     if frame.debug_wanted and answer.debug_image:
         width, height, channels, pixels = answer.debug_image
         connection.send(_DEBUG_IMAGE, struct.pack("<qIIII", frame.index, width, height, channels, 0)
                         + bytes(pixels))
     if frame.debug_wanted and len(answer.map_points):
-        connection.send(_MAP_POINTS, struct.pack("<qII", frame.index, len(answer.map_points), 0)
-                        + b"".join(struct.pack("<3f", *point) for point in answer.map_points))
+        points = [point for point in answer.map_points
+                  if all(abs(value) <= _LARGEST_FLOAT for value in point)]
+        if len(points) < len(answer.map_points):
+            _warn_not_finite(connection, "a map point")
+        connection.send(_MAP_POINTS, struct.pack("<qII", frame.index, len(points), 0)
+                        + b"".join(struct.pack("<3f", *point) for point in points))
     figures = [("counter", *item) for item in answer.counters.items()]
     figures += [("timing_ms", *item) for item in answer.timings_ms.items()]
     text = ""
@@ -260,11 +272,8 @@ def _send_answer(connection, frame, answer, crc32):
         value = float(figure)
         if math.isfinite(value):
             text += f"{key} {name} {value!r}\n"
-        elif not connection.not_finite_seen:
-            connection.not_finite_seen = True
-            connection.send(_LOG, struct.pack("<I", WARNING) + (
-                f"{key} {name} is not finite: this and later such values are ignored"
-            ).encode())
+        else:
+            _warn_not_finite(connection, f"{key} {name}")
     text += _covariance_text(answer.covariance)
     connection.send(_ANSWER, struct.pack("<qII3d4ddII", frame.index, answer.state, answer.map_id,
                                          *answer.position, *answer.quaternion_xyzw,

@@ -142,11 +142,11 @@ Result<std::optional<VoEstimate>> Session::wait_answer(Clock::time_point deadlin
     for (const std::string& line : figures_.take_notes()) output_->note(line);
     if (!estimate)
       return estimate.error().in("ANSWER to frame " + std::to_string(under_way_->index));
+    estimate->debug_image = std::move(extra_.debug_image);
+    estimate->map_points_vo = std::move(extra_.map_points_vo);
     const Status usable = poses_.take(*estimate);
     for (const std::string& line : poses_.take_notes()) output_->note(line);
     if (!usable) return usable.error();
-    estimate->debug_image = std::move(extra_.debug_image);
-    estimate->map_points_vo = std::move(extra_.map_points_vo);
     under_way_.reset();
     return std::optional<VoEstimate>(std::move(estimate).value());
   }

@@ -34,6 +34,27 @@ TEST_F(ProcessFigures, FiguresThatAreNotFiniteAreLeftOutWithOneWarning) {
                                       "such values are ignored"}));
 }
 
+TEST_F(ProcessFigures, MapPointsThatAreNotFiniteAreLeftOutWithOneWarning) {
+  const testing::TemporaryFolder folder;
+  const ProcessEstimatorOptions python = python_estimator(
+      "    def track(self, frame):\n"
+      "        return overfly_vo.Answer(\n"
+      "            map_points=[(1, 2, 3), (0, 0, float('inf')), (0, 1e39, 0)])\n",
+      folder.path());
+  for (const ProcessEstimatorOptions& options : {scripted("inf_point"), python}) {
+    const auto estimator = started(options);
+    estimator->set_debug(true);
+    for (const VoFrame& frame : ground_frames(3, 1.0, 1.0, 64, 48)) {
+      const Result<VoEstimate> estimate = estimator->track(frame);
+      ASSERT_TRUE(estimate.ok()) << estimate.error().message;
+      EXPECT_EQ(estimate->map_points_vo, (std::vector<Eigen::Vector3f>{{1.0F, 2.0F, 3.0F}}));
+    }
+    EXPECT_EQ(lines_with(*estimator, "not finite"),
+              (std::vector<std::string>{"warning: a map point is not finite: this and later such "
+                                        "values are ignored"}));
+  }
+}
+
 TEST_F(ProcessFigures, FiguresOfPythonThatAreNotFiniteAreLeftOutWithOneWarning) {
   const testing::TemporaryFolder folder;
   const ProcessEstimatorOptions options = python_estimator(

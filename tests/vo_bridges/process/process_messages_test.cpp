@@ -248,6 +248,9 @@ TEST(ProcessMessages, ReadMapPointsOfTheAnnouncedNumber) {
   const auto points = map_points_from(payload(1), small_frame());
   ASSERT_TRUE(points.ok());
   EXPECT_EQ(points->at(0), Eigen::Vector3f(1.0F, -2.0F, 0.0F));
+  std::string infinite = payload(1);
+  infinite.replace(infinite.size() - 4, 4, std::string("\0\0\x80\x7F", 4));
+  EXPECT_TRUE(map_points_from(infinite, small_frame()).ok()) << "PoseIntake leaves it out";
   EXPECT_THAT(map_points_from(payload(0xFFFFFFFF), small_frame()).error().message,
               HasSubstr("must be 51539607556"));
 }

@@ -89,6 +89,10 @@ class Scripted final : public overfly_vo::Estimator {
       answer.counters["parallax"] = std::numeric_limits<double>::quiet_NaN();
       answer.timings_ms["map"] = std::numeric_limits<double>::infinity();
     }
+    if (behaviour_ == "inf_point" && frame.debug_wanted) {
+      answer.map_points = {{1.0F, 2.0F, 3.0F},
+                           {0.0F, 0.0F, std::numeric_limits<float>::infinity()}};
+    }
     if (behaviour_ == "many_names") tell_many_names(&answer);
     if ((behaviour_ == "good" || behaviour_ == "late") && frame.debug_wanted) {
       answer.debug_image = overfly_vo::picture_of(frame);

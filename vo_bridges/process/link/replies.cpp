@@ -24,7 +24,7 @@ Status check_frame(const char* message, std::int64_t index, const VoFrame& frame
                    std::to_string(frame.index) + " is expected");
 }
 
-/// Reads the pose unchecked: PoseIntake checks it.
+/// Reads the pose unchecked: PoseIntake checks it, as well as map points.
 void read_pose(ByteReader* reader, EstimateSample* sample) {
   for (int i = 0; i < 3; ++i) sample->T_vo_camera.translation[i] = reader->f64();
   for (int i = 0; i < 4; ++i) sample->T_vo_camera.rotation.coeffs()[i] = reader->f64();  // x y z w
@@ -177,7 +177,6 @@ Result<std::vector<Eigen::Vector3f>> map_points_from(std::string_view payload,
   std::vector<Eigen::Vector3f> points(count);
   for (Eigen::Vector3f& point : points) {
     for (int i = 0; i < 3; ++i) point[i] = reader.f32();
-    if (!point.allFinite()) return bad_reply("MAP_POINTS has a point that is not finite");
   }
   return points;
 }
