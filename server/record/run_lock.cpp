@@ -53,6 +53,14 @@ bool RunLock::held(const fs::path& folder) {
   return held;
 }
 
+void RunLock::keep_room() const {
+  // Many times a manifest, which lists every file of the world.
+  constexpr off_t kRoomBytes = 256 << 10;
+  (void)::posix_fallocate(descriptor_, 0, kRoomBytes);
+}
+
+void RunLock::free_room() const { (void)!::ftruncate(descriptor_, 0); }
+
 RunLock::RunLock(int descriptor, fs::path file) : descriptor_(descriptor), file_(std::move(file)) {}
 
 RunLock::RunLock(RunLock&& other) noexcept

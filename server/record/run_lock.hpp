@@ -16,6 +16,10 @@ class RunLock {
   [[nodiscard]] static bool held(const std::filesystem::path& folder);
   /// The file of a run folder that is locked, by flock(2).
   [[nodiscard]] static std::filesystem::path file_of(const std::filesystem::path& folder);
+  /// Keeps room on the disk in the lock's file, if there is any and the file system can: a run that
+  /// fills the disk can then still write its end.
+  void keep_room() const;
+  void free_room() const;
   ~RunLock();  ///< releases and removes the file
   RunLock(RunLock&& other) noexcept;
   RunLock& operator=(RunLock&& other) noexcept;

@@ -168,6 +168,7 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::create(const fs::path& folder,
 }
 
 Status RunRecorder::open_files() {
+  lock_->keep_room();
   manifest_.version = version();
   manifest_.commit = git_commit();
   manifest_.seed = scenario_.seed;
@@ -345,6 +346,7 @@ Result<RunMetrics> RunRecorder::finish(RunStatus status, const std::string& erro
 
 Status RunRecorder::let_go() {
   put_run_info(info_, manifest_);
+  lock_->free_room();
   Status written = write_json(manifest_file(folder_), json_from(manifest_));
   // Before the end of the run is announced, since others may change the file from then on.
   timeline_->set_manifest_stamp(FileStamp::of(manifest_file(folder_)));

@@ -103,6 +103,7 @@ class ManagedRuns {
   void work();
   void watch();
   void fly(ManagedRun& run);
+  void log_failure(const std::string& id, const std::string& reason) const;
   void end(const std::shared_ptr<ManagedRun>& run);
   /// Removes a run that did not set a final state itself.
   void drop(const std::shared_ptr<ManagedRun>& run, const char* reason) noexcept;

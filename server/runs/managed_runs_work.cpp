@@ -88,6 +88,7 @@ void ManagedRuns::drop(const std::shared_ptr<ManagedRun>& run, const char* reaso
   runs_.erase(run->id);
   try {
     if (server::is_live(*run->timeline)) set_status(*run->timeline, RunStatus::kFailed, reason);
+    log_failure(run->id, reason);
   } catch (const std::exception&) {
     // Its folder shows it as interrupted.
   }
@@ -99,6 +100,7 @@ void ManagedRuns::end(const std::shared_ptr<ManagedRun>& run) {
       std::filesystem::exists(manifest_file(options.runs_folder / run->id), ignored);
   if (has_folder) {
     shelf.put(run->id, run->timeline);
+    index.set_end(run->id, run->timeline->info());
   } else if (!run->recorded) {
     release_run(options.runs_folder, run->id);
   }
@@ -122,6 +124,10 @@ void ManagedRuns::watch() {
     }
     lock.lock();
   }
+}
+
+void ManagedRuns::log_failure(const std::string& id, const std::string& reason) const {
+  if (options.log) options.log("error", "run " + id + " failed: " + reason);
 }
 
 void ManagedRuns::fly(ManagedRun& run) {
@@ -152,6 +158,7 @@ void ManagedRuns::fly(ManagedRun& run) {
   if (!run.recorded) {
     set_status(*run.timeline, RunStatus::kFailed, result.error().message);
   }
+  if (!result) log_failure(run.id, result.error().message);
 }
 
 }  // namespace overfly::server

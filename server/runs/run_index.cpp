@@ -79,6 +79,10 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
     if (Result<RunInfo> info = read_listed_run(folder_ / id); info) {
       info->world_change = entry.world_change;
       if (info->problem.empty()) info->problem = entry.fault;
+      if (entry.unwritten_end && info->status == RunStatus::kInterrupted) {
+        info->status = entry.unwritten_end->status;
+        info->error = entry.unwritten_end->error;
+      }
       entry.info = std::make_shared<const RunInfo>(std::move(*info));
     }
   }
@@ -148,21 +152,23 @@ void RunIndex::set_world_change(const std::string& id, const std::string& change
   Entry* entry = find(id);
   if (entry == nullptr || entry->world_change == change) return;
   entry->world_change = change;
-  RunInfo info = *entry->info;
-  info.world_change = change;
-  entry->info = std::make_shared<const RunInfo>(std::move(info));
-  unsorted_ = true;
+  entry->settled = false;
+}
+
+void RunIndex::set_end(const std::string& id, const RunInfo& end) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = find(id);
+  if (entry == nullptr || entry->info->status != RunStatus::kInterrupted) return;
+  entry->unwritten_end = {end.status, end.error};
+  entry->settled = false;
 }
 
 void RunIndex::set_fault(const std::string& id, const std::string& fault) {
   const std::lock_guard lock(mutex_);
   Entry* entry = find(id);
   if (entry == nullptr || entry->fault == fault) return;
-  RunInfo info = *entry->info;
-  if (info.problem == entry->fault) info.problem = fault;
   entry->fault = fault;
-  entry->info = std::make_shared<const RunInfo>(std::move(info));
-  unsorted_ = true;
+  entry->settled = false;
 }
 
 }  // namespace overfly::server

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -36,6 +37,8 @@ class RunIndex {
   [[nodiscard]] Result<RunInfo> run(const std::string& id);
   /// Sets RunInfo::world_change of a run.
   void set_world_change(const std::string& id, const std::string& change);
+  /// Lists how a run of this process has ended, if that could not be written to its manifest.
+  void set_end(const std::string& id, const RunInfo& end);
   /// Lists a fault that was found when the run's data were read (RunInfo::problem), if its manifest
   /// has none; "" removes it.
   void set_fault(const std::string& id, const std::string& fault);
@@ -45,11 +48,17 @@ class RunIndex {
     FileStamp manifest;
     FileStamp notes;
     FileStamp metrics;
-    /// Read after the last change of these files; only a change of them can change the run.
+    /// Read after the last change of these files and of what is known below; only a change of them
+    /// can change the run.
     bool settled = false;
     std::shared_ptr<const RunInfo> info;  ///< null if there is no manifest
     std::string world_change;
     std::string fault;
+    struct End {
+      RunStatus status;
+      std::string error;
+    };
+    std::optional<End> unwritten_end;
   };
   /// Both return whether anything has changed. @pre mutex_ is held
   bool look_for_folders(int descriptor);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,8 @@ struct RunManagerOptions {
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
   /// never the folders of runs, sweeps and studies. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
+  /// Is told of flights that fail: (level, text). Called from several threads; may be empty.
+  std::function<void(const std::string&, const std::string&)> log;
 };
 
 /// Folders whose files scenarios may name, and which files of the machine these are.

@@ -115,6 +115,7 @@ int serve(const ServeArguments& arguments) {
   }
   manager_options.data_folders.emplace(arguments.data.begin(), arguments.data.end());
   manager_options.data_folders->emplace_back(arguments.uploads);
+  manager_options.log = log_line;
   const auto runs = server::RunManager::create(manager_options);
   if (!runs) return report(runs.error());
   server::ViewService views(**runs);

@@ -7,9 +7,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <functional>
 #include <new>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "server/files/whole_file.hpp"
@@ -128,7 +130,9 @@ TEST(RunFailure, ExceptionInFlightEndsTheRunAfterItsLastFrame) {
   RunOptions options;
   options.folder = folder.path() / "r";
   options.renderer_factory = testing::noop_factory();
-  options.progress = [](const RunInfo& info) {
+  options.progress = [&](const RunInfo& info) {
+    // Kept free for the end of the manifest.
+    EXPECT_EQ(fs::file_size(RunLock::file_of(options.folder)), 256U << 10U);
     if (info.frames == 5) throw_bad_alloc();
   };
   const auto scenario = testing::small_scenario({R"(estimators=[{"name":"p","type":"perfect"}])"});
@@ -159,6 +163,36 @@ TEST_F(RunFailureOfManager, ManagerGoesOnAfterEachFailure) {
   }
   const std::string id = runs->start("small", {}).value().id;
   EXPECT_EQ(wait_for_end(*runs, id).status, RunStatus::kCompleted);
+}
+
+/// As on a full disk: neither rows nor the manifest can be written.
+TEST_F(RunFailureOfManager, EndThatCannotBeWrittenIsKnownAndLogged) {
+  std::string logged;
+  RunManagerOptions logging = options();
+  logging.log = [&](const std::string& level, const std::string& text) {
+    logged += level + ": " + text + "\n";
+  };
+  std::string id;
+  {
+    const auto runs = std::move(RunManager::create(logging).value());
+    std::vector<Override> recording = endless();
+    recording.push_back({"recording.frames", true});
+    id = runs->start("small", recording).value().id;
+    wait_for_first_frame(*runs->timeline(id).value());
+    fs::create_directory(manifest_file(folder_of(id)).string() + ".part");
+    fs::remove_all(folder_of(id) / "frames");
+    const RunInfo failed = wait_for_end(*runs, id);
+    EXPECT_EQ(failed.status, RunStatus::kFailed);
+    EXPECT_THAT(failed.error, HasSubstr("frames"));
+    // The thread that flew the run notes it a moment later.
+    for (int i = 0; i < 2000 && runs->run(id).value().status != RunStatus::kFailed; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    EXPECT_EQ(runs->run(id).value().error, failed.error);
+    EXPECT_EQ(runs->runs().front()->status, RunStatus::kFailed);
+  }
+  EXPECT_THAT(logged, HasSubstr("error: run " + id + " failed: "));
+  EXPECT_EQ(read_run_info(folder_of(id)).value().status, RunStatus::kInterrupted);
 }
 
 TEST(RunMemory, GrowsWithCamerasPixelsAndChannels) {
