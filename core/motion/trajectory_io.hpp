@@ -61,8 +61,11 @@ struct TrajectoryLimits {
 /// comment is no pose.
 [[nodiscard]] Result<TrajectoryFormat> detect_trajectory(const std::filesystem::path& file);
 
-/// Writes a TUM file. Stamps are exact to the nanosecond, and numbers read back exactly. The file
-/// is written completely or not at all. Errors: kIo.
+/// The text of a TUM file. Stamps are exact to the nanosecond, and numbers read back exactly.
+/// @pre comments have keys without spaces and values on one line
+[[nodiscard]] std::string tum_text(const Trajectory& trajectory,
+                                   const std::map<std::string, std::string>& comments = {});
+/// Writes a TUM file, completely or not at all. Errors: kIo.
 [[nodiscard]] Status write_tum(const std::filesystem::path& file,
                                const Trajectory& trajectory,
                                const std::map<std::string, std::string>& comments = {});

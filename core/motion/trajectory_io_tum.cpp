@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+}  // namespace
+
 std::string tum_text(const Trajectory& trajectory,
                      const std::map<std::string, std::string>& comments) {
   std::string text;
@@ -29,8 +31,6 @@ std::string tum_text(const Trajectory& trajectory,
   }
   return text;
 }
-
-}  // namespace
 
 Status write_tum(const fs::path& file,
                  const Trajectory& trajectory,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/motion/trajectory_io.hpp"
@@ -11,6 +12,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/estimator_tally.hpp"
 #include "server/record/run_folder.hpp"
+#include "server/record/run_info_file.hpp"
 #include "server/scenario/estimator_spec.hpp"
 #include "server/scoring/camera_metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
@@ -77,34 +79,22 @@ EstimatorMetrics estimator_metrics_from(const RunRecords& records,
   return metrics;
 }
 
-Status write_trajectories(const fs::path& folder, const RunRecords& records) {
-  for (std::size_t i = 0; i < records.cameras.size(); ++i) {
-    const Result<Trajectory> truth = truth_of(records.cameras[i]);
-    if (!truth) return truth.error();
-    const fs::path file = CameraFiles(folder, i, records.cameras[i].name).truth();
-    if (Status status = write_tum(file, *truth); !status) return status;
+/// Only the piece that is scored: those before and after a reset have no common origin or scale.
+Result<RunTrajectory> scored_piece(const RunRecords& records, const EstimatorRecords& estimator) {
+  RunTrajectory piece;
+  const auto initial = initial_frame(records, estimator);
+  if (!initial) return piece;
+  if (initial->scene_depth) piece.comments["init_scene_depth"] = number_text(*initial->scene_depth);
+  if (initial->true_depth_m) {
+    piece.comments["init_true_depth"] = number_text(*initial->true_depth_m);
   }
-  for (const EstimatorRecords& estimator : records.estimators) {
-    const auto initial = initial_frame(records, estimator);
-    Trajectory trajectory;
-    std::map<std::string, std::string> comments;
-    if (initial && initial->scene_depth) {
-      comments["init_scene_depth"] = number_text(*initial->scene_depth);
-    }
-    if (initial && initial->true_depth_m) {
-      comments["init_true_depth"] = number_text(*initial->true_depth_m);
-    }
-    for (const EstimateRecord& record : estimator.records) {
-      // Only the scored piece: pieces before and after a reset have no common origin or scale.
-      if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
-      if (record.sample.map_id != initial->map_id) continue;
-      const Status added = trajectory.append({record.sample.t_ns, record.sample.T_vo_camera});
-      if (!added) return added.error().in("estimator " + estimator.name);
-    }
-    const fs::path file = estimate_tum_file(folder, estimator.name);
-    if (Status status = write_tum(file, trajectory, comments); !status) return status;
+  for (const EstimateRecord& record : estimator.records) {
+    if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
+    if (record.sample.map_id != initial->map_id) continue;
+    const Status added = piece.poses.append({record.sample.t_ns, record.sample.T_vo_camera});
+    if (!added) return added.error().in("estimator " + estimator.name);
   }
-  return {};
+  return piece;
 }
 
 }  // namespace
@@ -138,6 +128,49 @@ bool is_texture_limited(const RunMetrics& metrics) {
   return std::any_of(metrics.cameras.begin(),
                      metrics.cameras.end(),
                      [](const CameraMetrics& camera) { return camera.texture.limited; });
+}
+
+Result<std::vector<RunTrajectory>> trajectories_of(const fs::path& folder,
+                                                   const RunRecords& records) {
+  std::vector<RunTrajectory> trajectories;
+  for (std::size_t i = 0; i < records.cameras.size(); ++i) {
+    Result<Trajectory> truth = truth_of(records.cameras[i]);
+    if (!truth) return truth.error();
+    trajectories.push_back(
+        {CameraFiles(folder, i, records.cameras[i].name).truth(), std::move(*truth), {}});
+  }
+  for (const EstimatorRecords& estimator : records.estimators) {
+    Result<RunTrajectory> piece = scored_piece(records, estimator);
+    if (!piece) return piece.error();
+    piece->file = estimate_tum_file(folder, estimator.name);
+    trajectories.push_back(std::move(*piece));
+  }
+  return trajectories;
+}
+
+Status write_trajectories(const fs::path& folder, const RunRecords& records) {
+  const Result<std::vector<RunTrajectory>> trajectories = trajectories_of(folder, records);
+  if (!trajectories) return trajectories.error();
+  for (const RunTrajectory& trajectory : *trajectories) {
+    Status written = write_tum(trajectory.file, trajectory.poses, trajectory.comments);
+    if (!written) return written;
+  }
+  return {};
+}
+
+Result<RunTrajectory> missing_trajectory(const fs::path& folder, const fs::path& file) {
+  const Result<RunInfo> info = read_run_info(folder);
+  if (!info) return info.error();
+  const Error none{ErrorCode::kNotFound, file.filename().string() + ": no such trajectory"};
+  if (info->status == RunStatus::kRunning) return none;
+  const Result<RunRecords> records = read_run_records(folder);
+  if (!records) return records.error();
+  Result<std::vector<RunTrajectory>> trajectories = trajectories_of(folder, *records);
+  if (!trajectories) return trajectories.error();
+  for (RunTrajectory& trajectory : *trajectories) {
+    if (trajectory.file == file) return std::move(trajectory);
+  }
+  return none;
 }
 
 Result<RunMetrics> write_derived(const fs::path& folder, const RunRecords& records) {

@@ -1,6 +1,7 @@
 #include "server/trajectories/run_trajectory.hpp"
 
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "server/files/plain_name.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_manifest.hpp"
+#include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 
 namespace overfly::server {
@@ -36,6 +38,26 @@ std::optional<RunFile> run_file(const fs::path& folder, const std::string& part)
   }
   if (!is_plain_name(part)) return std::nullopt;
   return RunFile{estimate_tum_file(folder, part), "", part};
+}
+
+/// Errors: kNotFound, also where a link leads out of the folder; as read_trajectory and
+/// missing_trajectory.
+Result<TrajectoryFile> poses_of(const fs::path& folder,
+                                const fs::path& file,
+                                const std::atomic<bool>* cancel) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(file, ignored))) {
+    Result<RunTrajectory> made = missing_trajectory(folder, file);
+    if (!made) return made.error();
+    TrajectoryFile poses;
+    poses.trajectory = std::move(made->poses);
+    poses.comments = std::move(made->comments);
+    return poses;
+  }
+  if (!SourcePolicy::inside({folder}).check(file, "run")) {
+    return Error{ErrorCode::kNotFound, file.string() + ": leads out of the run's folder"};
+  }
+  return read_trajectory(file, kServedTrajectoryLimits, cancel);
 }
 
 /// The mount of the camera whose poses a file has; of the nadir camera if the manifest has none.
@@ -69,11 +91,9 @@ Result<ServedTrajectory> read_run_trajectory(const fs::path& folder,
                                              const std::string& reference,
                                              const std::atomic<bool>* cancel) {
   const std::optional<RunFile> file = run_file(folder, part);
-  // Also where a link leads out of the folder.
-  if (!file || !SourcePolicy::inside({folder}).check(file->file, "run")) {
-    return no_such_trajectory(reference);
-  }
-  Result<TrajectoryFile> poses = read_trajectory(file->file, kServedTrajectoryLimits, cancel);
+  if (!file) return no_such_trajectory(reference);
+  Result<TrajectoryFile> poses = poses_of(folder, file->file, cancel);
+  if (!poses && poses.error().code == ErrorCode::kNotFound) return no_such_trajectory(reference);
   if (!poses) {
     return Error{poses.error().code, shown_without(folder, reference, poses.error().message)};
   }

@@ -185,6 +185,9 @@ int evaluate_run(const EvaluateArguments& arguments) {
   const server::RunMetrics metrics = server::metrics_from(*records);
   print_run(arguments, *info, metrics);
   if (!lock) return report(lock.error());
+  // An interrupted run has none.
+  const Status drawn = server::write_trajectories(arguments.run, *records);
+  if (!drawn) return report(drawn.error());
   const Status written =
       server::write_json(server::metrics_file(arguments.run), server::json_from(metrics));
   return written ? kExitOk : report(written.error());
@@ -212,8 +215,9 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   command->add_option("--estimate", arguments->estimates, "Trajectory files to score");
   CLI::Option* const run =
       command
-          ->add_option(
-              "--run", arguments->run, "Run folder to score again; its metrics.json is updated")
+          ->add_option("--run",
+                       arguments->run,
+                       "Run folder to score again; its metrics.json and *.tum are written")
           ->excludes("--truth")
           ->excludes("--estimate");
   std::vector<std::string> modes = alignment_mode_names();

@@ -2,10 +2,13 @@
 #include <system_error>
 #include <utility>
 
+#include "core/motion/trajectory_io.hpp"
 #include "core/outside/file_text.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/rest/rest_api.hpp"
 #include "server/net/stream/row_encoder.hpp"
+#include "server/record/run_folder.hpp"
+#include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"
@@ -19,6 +22,7 @@ using server::RunManager;
 using server::RunTimeline;
 
 constexpr const char* kTruth = "truth";
+constexpr const char* kTumType = "text/plain; charset=utf-8";
 
 /// Whether a run's file is a symbolic link to a place outside the run's folder.
 bool leads_out_of(const fs::path& folder, const fs::path& file) {
@@ -28,6 +32,14 @@ bool leads_out_of(const fs::path& folder, const fs::path& file) {
   const fs::path home = fs::canonical(folder, error);
   const auto parts = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
   return error || parts.first != home.end();
+}
+
+HttpResponse text_response(std::string text, const std::string& content_type) {
+  HttpResponse response;
+  response.content_type = content_type;
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  response.body = std::move(text);
+  return response;
 }
 
 /// Serves a file of a run unchanged. @param name  relative to the run's folder
@@ -50,11 +62,7 @@ HttpResponse result_response(const fs::path& folder,
     }
     return error_response({ErrorCode::kNotFound, absent});
   }
-  HttpResponse response;
-  response.content_type = content_type;
-  response.headers.emplace_back("Cache-Control", "no-cache");
-  response.body = std::move(*text);
-  return response;
+  return text_response(std::move(*text), content_type);
 }
 
 HttpResponse metrics(RunManager* runs, const std::string& id) {
@@ -125,12 +133,19 @@ HttpResponse trajectory(RunManager* runs, const RouteCall& call) {
   }
   const auto folder = runs->folder(id);
   if (!folder) return error_response(folder.error());
-  const std::string file_name = name + ".tum";
+  const fs::path file = name == kTruth ? server::CameraFiles::of_main_camera(*folder).truth()
+                                       : server::estimate_tum_file(*folder, name);
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(file, ignored))) {
+    const auto made = server::missing_trajectory(*folder, file);
+    if (made) return text_response(tum_text(made->poses, made->comments), kTumType);
+    if (made.error().code != ErrorCode::kNotFound) return error_response(made.error());
+  }
   return result_response(
       *folder,
-      name == kTruth ? fs::path(file_name) : fs::path("estimates") / file_name,
-      "text/plain; charset=utf-8",
-      file_name + " is written when the run ends; format=json returns the rows so far");
+      file.lexically_relative(*folder),
+      kTumType,
+      name + ".tum is written when the run ends; format=json returns the rows so far");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/motion/trajectory_io.hpp"
 #include "tests/server/app/command_line_fixture.hpp"
 #include "tests/server/app/program.hpp"
 
@@ -127,6 +128,8 @@ TEST_F(CommandLine, KilledRunLeavesAReadableFolderMarkedInterrupted) {
   EXPECT_GT(written.at("estimators").at("perfect").at("alignments").size(), 1U)
       << "all alignments, not only those that were printed";
   EXPECT_FALSE(fs::exists(path("killed/.running")));
+  EXPECT_GT(read_trajectory(path("killed/truth.tum")).value().trajectory.size(), 9U);
+  EXPECT_TRUE(fs::exists(path("killed/estimates/perfect.tum")));
 }
 
 TEST_F(CommandLine, EvaluateWritesMetricsOfARunThatIsNotInUse) {

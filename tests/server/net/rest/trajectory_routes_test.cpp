@@ -12,6 +12,7 @@
 #include "core/time.hpp"
 #include "evaluation/axis_errors.hpp"
 #include "evaluation/evaluation.hpp"
+#include "server/record/run_lock.hpp"
 #include "tests/flight/logs/northward_log.hpp"
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
@@ -312,6 +313,33 @@ TEST_F(TrajectoryRoutesTest, ReadsLogsAndRunsAsWell) {
   EXPECT_NEAR(truth.at("attitudes").at("yaw_deg").at(0).get<double>(),
               rows.at("yaw_deg").at(0).get<double>(),
               1e-3);
+}
+
+/// Its files were to be written at its end.
+TEST_F(TrajectoryRoutesTest, OfAnInterruptedRunAreMadeFromItsRows) {
+  const std::string id = server_.fly("tiny");
+  const fs::path killed = server_.folder() / "runs" / "killed";
+  fs::copy(server_.folder() / "runs" / id, killed, fs::copy_options::recursive);
+  const std::string manifest = read_text(killed / "manifest.json");
+  write_text(killed / "manifest.json",
+             std::string(manifest).replace(manifest.find("completed"), 9, "running"));
+  for (const char* name : {"truth", "perfect"}) {
+    const std::string part = std::string("/trajectories/") + name;
+    fs::remove(killed / (name == std::string("truth") ? "truth.tum" : "estimates/perfect.tum"));
+    const Answer made = call("GET", "/api/v1/runs/killed" + part);
+    EXPECT_EQ(made.status, 200) << made.body;
+    EXPECT_EQ(made.body, call("GET", "/api/v1/runs/" + id + part).body) << "as at its end";
+  }
+  const Answer scored = evaluate({{"truth", "run:killed/truth"},
+                                  {"estimates", {"run:killed/perfect", "run:killed/nobody"}},
+                                  {"alignments", {"sim3"}}});
+  ASSERT_EQ(scored.status, 200) << scored.body;
+  EXPECT_TRUE(scored.json().at("estimates").at(0).contains("alignments"));
+  EXPECT_EQ(scored.json().at("estimates").at(1).at("error").at("code"), "not_found");
+  // While it flies there are none.
+  const server::RunLock lock = std::move(server::RunLock::take(killed)).value();
+  EXPECT_EQ(evaluate({{"truth", "run:killed/truth"}, {"estimates", {"run:killed/perfect"}}}).status,
+            404);
 }
 
 }  // namespace
