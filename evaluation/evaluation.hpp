@@ -143,7 +143,7 @@ struct AlignmentScore {
 struct Score {
   Outcome outcome = Outcome::kNotInitialised;
   std::optional<double> outcome_time_s;  ///< of late initialisation, loss, reset or divergence
-  int reset_count = 0;                   ///< since the first tracked frame
+  int reset_count = 0;                   ///< further maps, from the first tracked frame on
   double coverage = 0.0;                 ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight

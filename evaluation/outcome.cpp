@@ -184,13 +184,13 @@ void add_outcome(const std::vector<FlownFrame>& flown,
   const auto first =
       static_cast<std::size_t>(std::find_if(flown.begin(), flown.end(), has_pose) - flown.begin());
   score->initialised_at_s = s_from_ns(flown[first].sample.t_ns);
+  std::set<int> maps;
   std::set<int> tracked_maps;
-  int last_map = flown[first].sample.map_id;
   for (std::size_t i = first; i < flown.size(); ++i) {
+    maps.insert(flown[i].sample.map_id);
     if (has_pose(flown[i])) tracked_maps.insert(flown[i].sample.map_id);
-    last_map = std::max(last_map, flown[i].sample.map_id);
   }
-  score->reset_count = last_map - flown[first].sample.map_id;
+  score->reset_count = static_cast<int>(maps.size()) - 1;
 
   const std::vector<bool> held = held_frames(flown);
   const auto after_init = static_cast<double>(flown.size() - first);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,7 @@ class RunRecorder {
     LiveAlignment alignment;
     TrackingState last = TrackingState::kInitialising;
     int last_map_id = 0;
+    std::set<int> maps = {};  ///< ids of its answers so far
     std::vector<std::int64_t> frames = {};
     DurationList latency = {};
     LatencyHistogram latency_so_far = {};

@@ -34,10 +34,21 @@ Json use_json(const EstimatorStatus& status) {
 
 Status RunRecorder::add_event(std::size_t estimator, EstimatorEvent event) {
   EstimatorState& state = estimators_[estimator];
+  const std::int64_t unanswered_before = state.status.unanswered;
   if (Status status = state.lines.append(json_from(event.record)); !status) return status;
   const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
   const FrameRow* frame = frame_row(camera, event.record.sample.frame);
   tally(event.record, frame != nullptr ? frame->image_crc32 : std::nullopt, state.status);
+  if (unanswered_before == 0 && state.status.unanswered > 0) {
+    const EstimateSample& sample = event.record.sample;
+    Status logged =
+        log(sample.t_ns,
+            "warning",
+            info_.estimators[estimator] + " did not answer frame " + std::to_string(sample.frame) +
+                " within answer_timeout_s: this and later such frames are counted as "
+                "unanswered");
+    if (!logged) return logged;
+  }
   if (!event.record.dropped) {
     if (Status status = add_answer(estimator, event); !status) return status;
   }
@@ -137,13 +148,15 @@ Status RunRecorder::log_transition(std::size_t estimator, const EstimateRecord& 
   if (!state.status.crash.empty()) return {};
   const TrackingState last = std::exchange(state.last, sample.state);
   const int last_map_id = std::exchange(state.last_map_id, sample.map_id);
-  if (sample.map_id < last_map_id) {
+  const bool first_map = state.maps.empty();
+  const bool new_map = state.maps.insert(sample.map_id).second;
+  if (!first_map && new_map) {
+    return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
+  }
+  if (!first_map && sample.map_id != last_map_id) {
     return log(sample.t_ns,
                "info",
                name + " recovered map " + std::to_string(sample.map_id) + " and tracks");
-  }
-  if (sample.map_id != last_map_id) {
-    return log(sample.t_ns, "warning", name + " started a new map: origin and scale are new");
   }
   if (sample.state == last) return {};
   const bool lost = sample.state == TrackingState::kLost;

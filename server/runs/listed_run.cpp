@@ -37,6 +37,8 @@ Result<RunInfo> read_listed_run(const std::filesystem::path& folder) {
   if (!info) return info.error();
   if (const Result<RunMetrics> metrics = read_run_metrics(folder, kMostListedBytes)) {
     for (const auto& [name, of_estimator] : metrics->estimators) {
+      // A run that failed before its first frame says nothing about its estimators.
+      if (info->frames == 0) break;
       info->results.push_back(result_of(name, of_estimator, metrics->flight.path_length_m));
     }
   } else if (metrics.error().code != ErrorCode::kNotFound) {

@@ -200,6 +200,18 @@ TEST_F(OutcomeTest, AResetThatNeverTracksAgainIsALoss) {
   EXPECT_EQ(result.reset_count, 2);
 }
 
+TEST_F(OutcomeTest, AMapThatIsFoundAgainIsNoReset) {
+  set_map(0, 5);
+  set_map(200, 3);
+  set_map(300, 5);
+  set_map(400, 3);
+  set_map(500, 100);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kReset);
+  EXPECT_EQ(result.reset_count, 2) << "maps 3 and 100";
+  EXPECT_DOUBLE_EQ(*result.outcome_time_s, 20.0);
+}
+
 /// From 30 s on the scale shrinks by a factor at once; jumps of position do not occur.
 void change_scale(EstimateTrack* track, double factor) {
   const Eigen::Vector3d hinge = track->samples[300].T_vo_camera.translation;

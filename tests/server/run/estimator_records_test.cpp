@@ -74,6 +74,33 @@ TEST(EstimatorRun, LinesOfAnEstimatorAreInTheLogUnderItsName) {
   EXPECT_EQ(said.at("warning: slow"), "warning");
 }
 
+TEST(EstimatorRun, LogTellsNewMapsFromThoseThatAreFoundAgain) {
+  WitnessRun flight;
+  flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};
+  flight.behaviours["a"].maps = {5, 5, 3, 5, 3, 8};
+  flight.fly();
+  std::vector<std::string> said;
+  for (const Json& row : read_lines(log_file(flight.folder.path() / "r")).value()) {
+    const std::string text = row.at("text");
+    if (text.find(" map") != std::string::npos) said.push_back(text);
+  }
+  EXPECT_THAT(said,
+              ::testing::ElementsAre(HasSubstr("a started a new map"),
+                                     "a recovered map 5 and tracks",
+                                     "a recovered map 3 and tracks",
+                                     HasSubstr("a started a new map")));
+}
+
+TEST(EstimatorRun, FirstLateAnswerIsInTheLog) {
+  WitnessRun flight;
+  flight.overrides = {kThree};
+  flight.behaviours["b"].silent = 4;
+  flight.fly();
+  const std::string log = overfly::testing::read_text(log_file(flight.folder.path() / "r"));
+  EXPECT_THAT(log, HasSubstr("b did not answer frame 4 within answer_timeout_s"));
+  EXPECT_THAT(log, ::testing::Not(HasSubstr("a did not answer")));
+}
+
 TEST(EstimatorRun, TooManyLinesAreTruncated) {
   WitnessRun flight;
   flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};

@@ -155,10 +155,12 @@ TEST_F(RunFailureOfManager, ManagerGoesOnAfterEachFailure) {
   };
   const auto runs = std::move(RunManager::create(failing).value());
   for (const Failure& failure : failures()) {
-    const std::string id = runs->start("small", {}).value().id;
+    const std::string id = runs->start("small", perfect()).value().id;
     const RunInfo failed = wait_for_end(*runs, id);
     EXPECT_EQ(failed.status, RunStatus::kFailed);
     EXPECT_THAT(failed.error, HasSubstr(failure.told));
+    EXPECT_TRUE(fs::exists(metrics_file(folder_of(id))));
+    EXPECT_TRUE(runs->run(id).value().results.empty()) << "says nothing about its estimator";
     EXPECT_TRUE(runs->remove(id).ok());
   }
   const std::string id = runs->start("small", {}).value().id;

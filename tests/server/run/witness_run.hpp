@@ -1,6 +1,7 @@
 // Runs with estimators that record which images they get, for tests of several estimators.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -46,6 +47,7 @@ class Witness final : public VoPort {
     std::string unready = {};            ///< error of prepare(); empty = ready
     std::int64_t cancelled = -1;         ///< frame in which it is cancelled
     std::int64_t hangs = -1;             ///< frame at which it is ended because it hangs
+    std::vector<int> maps = {};          ///< map id by frame; the last one from there on
   };
   using Seen = std::map<std::int64_t, std::uint32_t>;
   Witness(Behaviour behaviour, Seen& seen) : behaviour_(std::move(behaviour)), seen_(seen) {}
@@ -75,6 +77,11 @@ class Witness final : public VoPort {
     estimate.sample.t_ns = frame.t_ns;
     estimate.sample.state = TrackingState::kTracking;
     estimate.sample.T_vo_camera.translation.x() = static_cast<double>(frame.index);
+    if (!behaviour_.maps.empty()) {
+      const auto last = static_cast<std::int64_t>(behaviour_.maps.size()) - 1;
+      estimate.sample.map_id =
+          behaviour_.maps[static_cast<std::size_t>(std::min(frame.index, last))];
+    }
     if (behaviour_.far_end) {
       estimate.image_crc32 = seen_[frame.index] + (frame.index == behaviour_.garbled ? 1U : 0U);
     }
