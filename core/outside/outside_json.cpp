@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 namespace overfly {
 namespace {
@@ -20,9 +22,14 @@ std::string position_of(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-}  // namespace
+/// What the brackets and colons outside strings tell of a text.
+struct Outline {
+  bool too_deep = false;
+  std::size_t keys = 0;  ///< of all objects together, if it is valid
+};
 
-Status check_json_depth(std::string_view text, const std::string& origin) {
+Outline outline_of(std::string_view text) {
+  Outline outline;
   std::size_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -35,11 +42,66 @@ Status check_json_depth(std::string_view text, const std::string& origin) {
     if (c == '"') in_string = true;
     if (c == '[' || c == '{') ++depth;
     if ((c == ']' || c == '}') && depth > 0) --depth;
+    if (c == ':') ++outline.keys;
     if (depth > kMaxJsonDepth) {
-      return Error{ErrorCode::kUnreadable,
-                   origin + ": is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};
+      outline.too_deep = true;
+      break;
     }
   }
+  return outline;
+}
+
+Error too_deep(const std::string& origin) {
+  return {ErrorCode::kUnreadable,
+          origin + ": is nested more than " + std::to_string(kMaxJsonDepth) + " deep"};
+}
+
+/// The keys of all objects in a value.
+template <typename Json>
+std::size_t count_keys(const Json& value) {
+  if (!value.is_structured()) return 0;
+  std::size_t keys = value.is_object() ? value.size() : 0;
+  for (const Json& element : value) keys += count_keys(element);
+  return keys;
+}
+
+/// The path of the first key that its object has twice: "estimators.0.name".
+template <typename Json>
+std::string repeated_key(std::string_view text) {
+  struct Level {
+    bool is_object;
+    std::set<std::string> keys = {};
+    std::string at = {};  ///< key or index of the current element
+    std::size_t elements = 0;
+  };
+  std::vector<Level> levels;
+  std::string path;
+  const auto next_element = [&] {
+    if (levels.empty() || levels.back().is_object) return;
+    levels.back().at = std::to_string(levels.back().elements++);
+  };
+  const auto look = [&](int, typename Json::parse_event_t event, Json& parsed) {
+    using Event = typename Json::parse_event_t;
+    if (event == Event::object_end || event == Event::array_end) levels.pop_back();
+    if (event == Event::value) next_element();
+    if (event == Event::object_start || event == Event::array_start) {
+      next_element();
+      levels.push_back({event == Event::object_start});
+    }
+    if (event != Event::key) return true;
+    levels.back().at = parsed.template get<std::string>();
+    if (levels.back().keys.insert(levels.back().at).second || !path.empty()) return true;
+    for (const Level& level : levels) path += (path.empty() ? "" : ".") + level.at;
+    return true;
+  };
+  [[maybe_unused]] const Json again = Json::parse(text, look);
+  return path;
+}
+
+}  // namespace
+
+Status check_json_depth(std::string_view text, const std::string& origin) {
+  if (outline_of(text).too_deep) return too_deep(origin);
   return {};
 }
 
@@ -57,9 +119,14 @@ Error json_syntax_error(std::string_view text,
 
 template <typename Json>
 Result<Json> json_from_outside(std::string_view text, const std::string& origin) {
-  if (Status status = check_json_depth(text, origin); !status) return status.error();
+  const Outline outline = outline_of(text);
+  if (outline.too_deep) return too_deep(origin);
   try {
-    return Json::parse(text);
+    Json document = Json::parse(text);
+    if (count_keys(document) == outline.keys) return document;
+    // The parser keeps the last value.
+    return Error{ErrorCode::kUnreadable,
+                 origin + ": " + repeated_key<Json>(text) + ": must be given at most once"};
   } catch (const typename Json::parse_error& error) {
     return json_syntax_error(text, error.byte, error.what(), origin);
   } catch (const typename Json::exception& error) {

@@ -24,11 +24,13 @@ inline constexpr std::size_t kMaxJsonDepth = 64;
                                       const std::string& complaint,
                                       const std::string& origin);
 
-/// Parses JSON from outside. The nesting depth is checked first, and no exception is thrown.
+/// Parses JSON from outside. The nesting depth is checked first, and no exception is thrown. A key
+/// that an object has twice is an error: one of the values would be lost.
 /// @tparam Json  nlohmann::json or nlohmann::ordered_json. The parser is compiled once for each of
 /// the two, because it takes the compiler a second in every file that uses it.
 /// @param origin  names the source in messages: a file, "the body"
-/// Errors: kUnreadable naming origin, line and column, or origin and depth limit.
+/// Errors: kUnreadable naming origin, line and column, or origin and depth limit, or the key's
+/// path.
 template <typename Json>
 [[nodiscard]] Result<Json> json_from_outside(std::string_view text, const std::string& origin);
 

@@ -55,6 +55,23 @@ TEST(OutsideJson, CountsSiblingsOnce) {
   EXPECT_TRUE(json_from_outside<json>(text + "]", "x").ok());
 }
 
+TEST(OutsideJson, RefusesAKeyThatIsGivenTwice) {
+  const auto fault = [](const std::string& text) {
+    const Result<json> read = json_from_outside<json>(text, "a.json");
+    const auto ordered = json_from_outside<nlohmann::ordered_json>(text, "a.json");
+    EXPECT_EQ(read.ok(), ordered.ok());
+    if (!read && !ordered) EXPECT_EQ(read.error().message, ordered.error().message);
+    return read ? "" : read.error().message;
+  };
+  const std::string twice = ": must be given at most once";
+  EXPECT_EQ(fault(R"({"a": 1, "a": 1})"), "a.json: a" + twice);
+  EXPECT_EQ(fault(R"({"x": {"b": 1}, "e": [7, [{}], {"n": {"k:": 1, "b": [2], "k:": 3}}]})"),
+            "a.json: e.2.n.k:" + twice);
+  EXPECT_EQ(fault(R"([{"a": {}, "a": {"a": 1}}, {"b": 1, "b": 2}])"), "a.json: 0.a" + twice);
+  EXPECT_EQ(fault(R"({"\u0061": 1, "a": 2})"), "a.json: a" + twice) << "the same key";
+  EXPECT_EQ(fault(R"([{"a": ":", ":": "\":"}, {"a": {"a": null}}, [], {}, 3, "{\"a\":1}"])"), "");
+}
+
 TEST(OutsideJson, SaysWhereTheSyntaxIsWrongAndQuotesLittle) {
   const Result<json> read = json_from_outside<json>("{\n  \"a\": x}", "a.json");
   ASSERT_FALSE(read.ok());
