@@ -11,7 +11,7 @@
 namespace overfly::net::foxglove {
 namespace {
 
-/// Of tracks and calibrations, which are sent as a whole.
+/// Of tracks, which are sent as a whole.
 constexpr std::int64_t kSlowPeriodNs = 1'000'000'000;
 constexpr std::int64_t kPointsPeriodNs = 500'000'000;
 
@@ -158,9 +158,6 @@ void FlightFeed::send_slow(std::int64_t now_ns) {
   slow_at_ns_ = now_ns;
   slow_t_ns_ = t_ns;
   messages_.send_paths(t_ns);
-  for (const Channel& channel : subscriptions_.channels(ChannelKind::kCameraInfo)) {
-    messages_.send_camera_info(channel.index, t_ns);
-  }
 }
 
 void FlightFeed::send_points(std::int64_t now_ns) {

@@ -274,14 +274,17 @@ std::optional<std::vector<std::uint8_t>> FlightMessages::picture_head(
 void FlightMessages::send_present(const Channel& channel, std::int64_t t_ns) {
   only_ = {channel.kind, channel.index};
   send_present_rows(t_ns);
-  for (std::size_t i = 0; i < cameras_.size(); ++i) send_camera_info(i, t_ns);
   send_paths(t_ns);
   only_.reset();
 }
 
 void FlightMessages::send_present_rows(std::int64_t t_ns) {
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    if (const auto row = timeline_->frame_at(t_ns, i)) send_frame(i, *row);
+    const auto row = timeline_->frame_at(t_ns, i);
+    if (!row) continue;
+    send_frame(i, *row);
+    // Of the image that is shown: the topic stays in order of time.
+    send_camera_info(i, row->t_ns);
   }
   for (std::size_t i = 0; i < names_.estimates.size(); ++i) {
     if (const auto row = timeline_->estimate_at(i, t_ns)) send_estimate(i, *row);

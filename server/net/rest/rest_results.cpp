@@ -68,9 +68,14 @@ HttpResponse result_response(const fs::path& folder,
 HttpResponse metrics(RunManager* runs, const std::string& id) {
   const auto timeline = runs->timeline(id);
   if (!timeline) return error_response(timeline.error());
-  const auto scored = (*timeline)->metrics();
-  if (!scored) return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
-  return json_response(200, server::json_from(*scored));
+  if (const auto scored = (*timeline)->metrics()) {
+    return json_response(200, server::json_from(*scored));
+  }
+  // A run plays without its metrics, also if they are damaged.
+  const auto folder = runs->folder(id);
+  const auto read = folder ? server::read_run_metrics(*folder) : folder.error();
+  if (!read && read.error().code != ErrorCode::kNotFound) return error_response(read.error());
+  return error_response({ErrorCode::kNotFound, "run " + id + " is not scored"});
 }
 
 HttpResponse estimators(RunManager* runs, const std::string& id) {

@@ -1,11 +1,24 @@
 #include "server/net/stream/row_feed.hpp"
 
+#include <set>
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
 #include "server/net/stream/row_encoder.hpp"
 
 namespace overfly::net {
+
+Status RowFeed::check_resume(const server::RunTimeline& timeline,
+                             const std::map<std::string, std::size_t>& resume) {
+  std::set<std::string> streams = {"truth", "log", "vehicle"};
+  for (const std::string& name : timeline.estimators()) streams.insert("estimate/" + name);
+  for (const auto& [name, rows] : resume) {
+    if (streams.contains(name)) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 "watch.resume." + name + ": is not a stream of rows of this run"};
+  }
+  return {};
+}
 
 RowFeed::RowFeed(std::string run_id,
                  std::shared_ptr<const server::RunTimeline> timeline,

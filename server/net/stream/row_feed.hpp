@@ -16,6 +16,9 @@ class RowFeed {
   /// Maximum number of rows in one message.
   static constexpr std::size_t kMaxRows = 2000;
 
+  /// Errors: kInvalidArgument naming a stream that the run does not have.
+  static Status check_resume(const server::RunTimeline& timeline,
+                             const std::map<std::string, std::size_t>& resume);
   /// @param resume  number of rows that the viewer already has, by stream; others start at 0
   RowFeed(std::string run_id,
           std::shared_ptr<const server::RunTimeline> timeline,

@@ -167,8 +167,11 @@ void Viewer::run_opened(Result<std::shared_ptr<server::RunTimeline>> timeline,
                         std::int64_t now_ns) {
   if (!opening_) return;
   const Opening opening = *std::exchange(opening_, std::nullopt);
-  if (timeline) watch(opening.command, std::move(*timeline));
-  answer(opening.request, timeline ? Status() : Status(timeline.error()), &port_);
+  const Status status =
+      timeline ? RowFeed::check_resume(**timeline, opening.command.resume.value_or(Resume()))
+               : Status(timeline.error());
+  if (status) watch(opening.command, std::move(*timeline));
+  answer(opening.request, status, &port_);
   tick(now_ns);
   while (!opening_ && !waiting_.empty()) {
     const std::string text = std::move(waiting_.front());

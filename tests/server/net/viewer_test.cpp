@@ -87,6 +87,14 @@ TEST_F(ViewerTest, ForgetsTheAlignmentOfARunThatIsNotWatchedAnyMore) {
   EXPECT_EQ(drawn_alignment(), "init_scale");
 }
 
+TEST_F(ViewerTest, RefusesToResumeAStreamThatTheRunDoesNotHave) {
+  const auto resume = [&](const char* stream) {
+    return command({{"type", "watch"}, {"run", "r"}, {"resume", {{stream, 1}}}, {"request", 1}});
+  };
+  EXPECT_EQ(resume("estimate/nobody")["code"], "invalid_argument");
+  EXPECT_EQ(resume("truth")["type"], "ok");
+}
+
 /// A run that was deleted and flown again under its name may lack the alignment that was shown.
 TEST_F(ViewerTest, ShowsScenesByTheAlignmentThatItReports) {
   command(

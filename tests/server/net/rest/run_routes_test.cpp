@@ -217,6 +217,10 @@ TEST(RunRoutes, DamagedRowsAreTheRunsProblemAndNoFailureOfTheServer) {
   write_text(rows, whole);
   EXPECT_EQ(ask(server.port(), "GET", run + "/metrics").status, 200);
   EXPECT_TRUE(shown().at("problem").is_null());
+  write_text(server::metrics_file(runs / "damaged"), "{");
+  const Answer metrics = ask(server.port(), "GET", run + "/metrics");
+  EXPECT_EQ(metrics.status, 422);
+  EXPECT_THAT(metrics.body, HasSubstr("metrics.json, line 1"));
 }
 
 TEST(RunRoutes, FailureOfTheServerIsLogged) {

@@ -189,6 +189,22 @@ TEST_F(RunStartsTest, RefusesOtherMethodsBodiesAndOrigins) {
   EXPECT_TRUE(server_.runs().runs().empty());
 }
 
+/// Whether or not the route takes a body.
+TEST_F(RunStartsTest, RefusesLargeBodiesAtEveryRouteAsDocumented) {
+  const std::string large((1U << 20U) + 1U, ' ');
+  for (const auto& [path, operations] : api_.at("paths").items()) {
+    std::string target = path;
+    std::erase_if(target, [](char c) { return c == '{' || c == '}'; });
+    for (const std::string method : {"POST", "PUT"}) {
+      const auto operation = operations.find(method == "POST" ? "post" : "put");
+      if (operation == operations.end()) continue;
+      // Uploads have limits of their own.
+      if (operation->dump().find("application/octet-stream") != std::string::npos) continue;
+      check(method, path, target, 413, large, kJson);
+    }
+  }
+}
+
 TEST_F(RunStartsTest, AnswersHeadLikeGetWithoutABody) {
   const Answer get = ask(server_.port(), "GET", "/api/v1/health");
   const Answer head = ask(server_.port(), "HEAD", "/api/v1/health");
