@@ -42,9 +42,9 @@ std::optional<RunFile> run_file(const fs::path& folder, const std::string& part)
 
 /// Errors: kNotFound, also where a link leads out of the folder; as read_trajectory and
 /// missing_trajectory.
-Result<TrajectoryFile> poses_of(const fs::path& folder,
-                                const fs::path& file,
-                                const std::atomic<bool>* cancel) {
+Result<TrajectoryFile> read_or_make(const fs::path& folder,
+                                    const fs::path& file,
+                                    const std::atomic<bool>* cancel) {
   std::error_code ignored;
   if (!fs::exists(fs::symlink_status(file, ignored))) {
     Result<RunTrajectory> made = missing_trajectory(folder, file);
@@ -92,7 +92,7 @@ Result<ServedTrajectory> read_run_trajectory(const fs::path& folder,
                                              const std::atomic<bool>* cancel) {
   const std::optional<RunFile> file = run_file(folder, part);
   if (!file) return no_such_trajectory(reference);
-  Result<TrajectoryFile> poses = poses_of(folder, file->file, cancel);
+  Result<TrajectoryFile> poses = read_or_make(folder, file->file, cancel);
   if (!poses && poses.error().code == ErrorCode::kNotFound) return no_such_trajectory(reference);
   if (!poses) {
     return Error{poses.error().code, shown_without(folder, reference, poses.error().message)};

@@ -4,12 +4,14 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <set>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
+#include "vo_bridges/process/child/private_folder.hpp"
 
 namespace overfly {
 namespace {
@@ -91,7 +93,8 @@ TEST_F(ProcessEnd, TemporaryFilesGoIntoAFolderOfItsOwnAndAreRemoved) {
     const auto other = started(options);
     for (VoPort* estimator : {one.get(), other.get()}) {
       ASSERT_TRUE(estimator->track(frame).ok()) << "the name is not taken";
-      for (const std::string& line : lines_with(*estimator, "overfly-vo-")) folders.insert(line);
+      for (const std::string& line : lines_with(*estimator, "overfly-estimator-"))
+        folders.insert(line);
     }
     ASSERT_EQ(folders.size(), 2U);
     for (const std::filesystem::path& its : folders) {
@@ -99,6 +102,28 @@ TEST_F(ProcessEnd, TemporaryFilesGoIntoAFolderOfItsOwnAndAreRemoved) {
     }
   }
   for (const std::filesystem::path& its : folders) EXPECT_FALSE(std::filesystem::exists(its));
+}
+
+/// Folders of killed programs go; those in use, or made just now, stay.
+TEST_F(ProcessEnd, FoldersThatNobodyUsesAnyMoreAreRemoved) {
+  namespace fs = std::filesystem;
+  const auto made = [](const std::string& end) {
+    const fs::path folder = fs::temp_directory_path() / ("overfly-estimator-test" + end);
+    fs::create_directories(folder / "a");
+    return folder;
+  };
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  const fs::path left = made("left");
+  const fs::path young = made("young");
+  auto used = process::PrivateFolder::create();
+  ASSERT_TRUE(used.ok()) << used.error().message;
+  for (const fs::path& folder : {left, used->path()}) fs::last_write_time(folder, long_ago);
+  const auto next = process::PrivateFolder::create();
+  ASSERT_TRUE(next.ok()) << next.error().message;
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(used->path()));
+  EXPECT_TRUE(fs::exists(young));
+  fs::remove_all(young);
 }
 
 TEST_F(ProcessEnd, AKilledServerLeavesNoOrphan) {

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <utility>
 
+#include "core/outside/file_descriptor.hpp"
 #include "core/result.hpp"
 
 namespace overfly::process {
 
 /// Accessible by this user only, in the system's folder for temporary files; removed with its
-/// content.
+/// content. It is locked while it is used: folders of programs that were killed are removed when
+/// the next one is created.
 class PrivateFolder {
  public:
   /// Errors: kIo.
@@ -23,9 +26,11 @@ class PrivateFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  explicit PrivateFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  PrivateFolder(std::filesystem::path path, FileDescriptor held)
+      : path_(std::move(path)), held_(std::move(held)) {}
 
   std::filesystem::path path_;  // empty = moved away
+  FileDescriptor held_;         // the folder, locked
 };
 
 }  // namespace overfly::process
