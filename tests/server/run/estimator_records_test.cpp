@@ -79,8 +79,10 @@ TEST(EstimatorRun, LogTellsNewMapsFromThoseThatAreFoundAgain) {
   flight.overrides = {R"(estimators=[{"name":"a","type":"feature"}])"};
   flight.behaviours["a"].maps = {5, 5, 3, 5, 3, 8};
   flight.fly();
+  const auto rows = read_lines(log_file(flight.folder.path() / "r"));
+  ASSERT_TRUE(rows.ok());
   std::vector<std::string> said;
-  for (const Json& row : read_lines(log_file(flight.folder.path() / "r")).value()) {
+  for (const Json& row : *rows) {
     const std::string text = row.at("text");
     if (text.find(" map") != std::string::npos) said.push_back(text);
   }

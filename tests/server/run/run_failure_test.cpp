@@ -182,7 +182,7 @@ TEST_F(RunFailureOfManager, EndThatCannotBeWrittenIsKnownAndLogged) {
     id = runs->start("small", recording).value().id;
     wait_for_first_frame(*runs->timeline(id).value());
     fs::create_directory(manifest_file(folder_of(id)).string() + ".part");
-    fs::remove_all(folder_of(id) / "frames");
+    fs::rename(folder_of(id) / "frames", folder_of(id) / "away");
     const RunInfo failed = wait_for_end(*runs, id);
     EXPECT_EQ(failed.status, RunStatus::kFailed);
     EXPECT_THAT(failed.error, HasSubstr("frames"));
