@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/time.hpp"
-#include "server/experiments/predict/instant_features.hpp"
-#include "server/experiments/predict/patch_camera.hpp"
+#include "server/experiments/predict/features/instant_features.hpp"
+#include "server/experiments/predict/features/patch_camera.hpp"
 #include "server/experiments/predict/risk_model.hpp"
 
 namespace overfly::server::predict {

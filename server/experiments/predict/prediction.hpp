@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/experiments/predict/features.hpp"
+#include "server/experiments/predict/features/features.hpp"
 
 namespace overfly::server::predict {
 

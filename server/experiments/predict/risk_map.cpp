@@ -11,8 +11,8 @@
 #include "core/measure/quantile.hpp"
 #include "core/time.hpp"
 #include "server/camera/truth_window.hpp"
-#include "server/experiments/predict/instant_features.hpp"
-#include "server/experiments/predict/patch_camera.hpp"
+#include "server/experiments/predict/features/instant_features.hpp"
+#include "server/experiments/predict/features/patch_camera.hpp"
 #include "server/experiments/predict/risk_model.hpp"
 
 namespace overfly::server::predict {

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/experiments/predict/features.hpp"
+#include "server/experiments/predict/features/features.hpp"
 
 namespace overfly::server::predict {
 

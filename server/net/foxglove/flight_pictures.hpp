@@ -10,7 +10,7 @@
 
 #include "server/net/foxglove/flight_messages.hpp"
 #include "server/net/foxglove/subscriptions.hpp"
-#include "server/net/stream/picture_slot.hpp"
+#include "server/net/stream/pictures/picture_slot.hpp"
 #include "server/net/stream/viewer_port.hpp"
 
 namespace overfly::net::foxglove {

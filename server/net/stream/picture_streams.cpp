@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "server/net/http/json_text.hpp"
-#include "server/net/stream/picture_codec.hpp"
+#include "server/net/stream/pictures/picture_codec.hpp"
 
 namespace overfly::net {
 namespace {

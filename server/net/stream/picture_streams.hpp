@@ -12,9 +12,9 @@
 
 #include "core/result.hpp"
 #include "server/net/stream/client_message.hpp"
-#include "server/net/stream/link_meter.hpp"
-#include "server/net/stream/picture_slot.hpp"
-#include "server/net/stream/send_window.hpp"
+#include "server/net/stream/pictures/link_meter.hpp"
+#include "server/net/stream/pictures/picture_slot.hpp"
+#include "server/net/stream/pictures/send_window.hpp"
 #include "server/net/stream/viewer_port.hpp"
 #include "server/timeline/row_alignment.hpp"
 #include "server/timeline/run_timeline.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "server/net/stream/picture_codec.hpp"
+#include "server/net/stream/pictures/picture_codec.hpp"
 
 namespace overfly::testing {
 

@@ -1,5 +1,5 @@
 // Features of images that are known: corners, noise, patterns that repeat.
-#include "server/experiments/predict/image_features.hpp"
+#include "server/experiments/predict/features/image_features.hpp"
 
 #include <gtest/gtest.h>
 

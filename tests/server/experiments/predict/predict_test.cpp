@@ -7,8 +7,8 @@
 #include <cmath>
 #include <regex>
 
-#include "server/experiments/predict/instant_features.hpp"
-#include "server/experiments/predict/patch_camera.hpp"
+#include "server/experiments/predict/features/instant_features.hpp"
+#include "server/experiments/predict/features/patch_camera.hpp"
 #include "server/experiments/predict/prediction_json.hpp"
 #include "server/experiments/predict/prediction_page.hpp"
 #include "server/experiments/predict/prediction_words.hpp"

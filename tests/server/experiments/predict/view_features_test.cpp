@@ -1,11 +1,11 @@
 // Relief, motion and overlap against closed forms over level ground, and the inputs of the model.
-#include "server/experiments/predict/view_features.hpp"
+#include "server/experiments/predict/features/view_features.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "server/experiments/predict/features.hpp"
+#include "server/experiments/predict/features/features.hpp"
 #include "tests/server/missions/level_world.hpp"
 
 namespace overfly::server::predict {

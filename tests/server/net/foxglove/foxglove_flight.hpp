@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/net/foxglove/foxglove_viewer.hpp"
-#include "tests/server/net/fake_port.hpp"
+#include "tests/server/net/stream/fake_port.hpp"
 
 namespace overfly::testing {
 

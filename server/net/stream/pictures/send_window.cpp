@@ -1,4 +1,4 @@
-#include "server/net/stream/send_window.hpp"
+#include "server/net/stream/pictures/send_window.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "server/app/commands/doctor_camera.hpp"
+#include "server/app/commands/doctor/doctor_camera.hpp"
 
 #include <unistd.h>
 

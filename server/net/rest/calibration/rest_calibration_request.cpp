@@ -1,4 +1,4 @@
-#include "server/net/rest/rest_calibration_request.hpp"
+#include "server/net/rest/calibration/rest_calibration_request.hpp"
 
 #include <map>
 #include <nlohmann/json.hpp>

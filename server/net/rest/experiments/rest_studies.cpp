@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "server/net/http/error_response.hpp"
+#include "server/net/rest/experiments/rest_study_request.hpp"
 #include "server/net/rest/rest_api.hpp"
-#include "server/net/rest/rest_study_request.hpp"
 
 namespace overfly::net {
 namespace {

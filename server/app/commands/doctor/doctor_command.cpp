@@ -6,8 +6,8 @@
 #include <string>
 
 #include "server/app/commands/commands.hpp"
-#include "server/app/commands/doctor_camera.hpp"
-#include "server/app/commands/doctor_checks.hpp"
+#include "server/app/commands/doctor/doctor_camera.hpp"
+#include "server/app/commands/doctor/doctor_checks.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/version.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/app/commands/bench_fly.hpp"
+#include "server/app/commands/bench/bench_fly.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "server/app/commands/bench_folder.hpp"
+#include "server/app/commands/bench/bench_folder.hpp"
 #include "server/app/stop_signal.hpp"
 #include "terrain/synthesize_strip.hpp"
 #include "terrain/world.hpp"

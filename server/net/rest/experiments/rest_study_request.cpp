@@ -1,4 +1,4 @@
-#include "server/net/rest/rest_study_request.hpp"
+#include "server/net/rest/experiments/rest_study_request.hpp"
 
 #include <cmath>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "server/net/stream/link_meter.hpp"
+#include "server/net/stream/pictures/link_meter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "server/app/commands/bench_logs.hpp"
+#include "server/app/commands/bench/bench_logs.hpp"
 
 #include <string>
 
 #include "flight/logs/probes/probe_log.hpp"
-#include "server/app/commands/bench_folder.hpp"
+#include "server/app/commands/bench/bench_folder.hpp"
 #include "server/app/stop_signal.hpp"
 
 namespace overfly::app {

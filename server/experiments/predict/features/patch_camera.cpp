@@ -1,10 +1,10 @@
-#include "server/experiments/predict/patch_camera.hpp"
+#include "server/experiments/predict/features/patch_camera.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "server/experiments/predict/image_features.hpp"
+#include "server/experiments/predict/features/image_features.hpp"
 
 namespace overfly::server::predict {
 namespace {

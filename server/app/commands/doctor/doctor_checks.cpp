@@ -1,4 +1,4 @@
-#include "server/app/commands/doctor_checks.hpp"
+#include "server/app/commands/doctor/doctor_checks.hpp"
 
 #include <unistd.h>
 

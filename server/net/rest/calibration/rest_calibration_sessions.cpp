@@ -8,8 +8,8 @@
 
 #include "server/calibration/session/session_json.hpp"
 #include "server/net/http/error_response.hpp"
+#include "server/net/rest/calibration/rest_calibration_request.hpp"
 #include "server/net/rest/rest_api.hpp"
-#include "server/net/rest/rest_calibration_request.hpp"
 #include "server/net/rest/rest_reading.hpp"
 #include "server/runs/run_manager.hpp"
 #include "server/scenario/document/scenario_faults.hpp"

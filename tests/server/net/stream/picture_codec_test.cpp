@@ -1,4 +1,4 @@
-#include "server/net/stream/picture_codec.hpp"
+#include "server/net/stream/pictures/picture_codec.hpp"
 
 #include <gtest/gtest.h>
 

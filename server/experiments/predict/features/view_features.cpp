@@ -1,4 +1,4 @@
-#include "server/experiments/predict/view_features.hpp"
+#include "server/experiments/predict/features/view_features.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/net/stream/picture_slot.hpp"
+#include "server/net/stream/pictures/picture_slot.hpp"
 
 #include <gtest/gtest.h>
 

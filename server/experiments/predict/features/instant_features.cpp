@@ -1,11 +1,11 @@
-#include "server/experiments/predict/instant_features.hpp"
+#include "server/experiments/predict/features/instant_features.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "server/experiments/predict/image_features.hpp"
-#include "server/experiments/predict/view_features.hpp"
+#include "server/experiments/predict/features/image_features.hpp"
+#include "server/experiments/predict/features/view_features.hpp"
 #include "server/missions/camera_view.hpp"
 
 namespace overfly::server::predict {

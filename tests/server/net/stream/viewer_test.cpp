@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
-#include "tests/server/net/fake_port.hpp"
+#include "tests/server/net/stream/fake_port.hpp"
 
 namespace overfly::net {
 namespace {

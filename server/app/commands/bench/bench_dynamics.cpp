@@ -1,4 +1,4 @@
-#include "server/app/commands/bench_dynamics.hpp"
+#include "server/app/commands/bench/bench_dynamics.hpp"
 
 #include <string>
 

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "renderer/probes/bench_probe.hpp"
-#include "server/app/commands/bench_dynamics.hpp"
-#include "server/app/commands/bench_fly.hpp"
-#include "server/app/commands/bench_folder.hpp"
-#include "server/app/commands/bench_logs.hpp"
+#include "server/app/commands/bench/bench_dynamics.hpp"
+#include "server/app/commands/bench/bench_fly.hpp"
+#include "server/app/commands/bench/bench_folder.hpp"
+#include "server/app/commands/bench/bench_logs.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/progress.hpp"

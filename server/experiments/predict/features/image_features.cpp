@@ -1,4 +1,4 @@
-#include "server/experiments/predict/image_features.hpp"
+#include "server/experiments/predict/features/image_features.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "server/experiments/predict/features.hpp"
+#include "server/experiments/predict/features/features.hpp"
 
 #include <algorithm>
 #include <cmath>

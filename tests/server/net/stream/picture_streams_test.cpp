@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/net/stream/picture_codec.hpp"
-#include "tests/server/net/fake_port.hpp"
+#include "server/net/stream/pictures/picture_codec.hpp"
+#include "tests/server/net/stream/fake_port.hpp"
 
 namespace overfly::net {
 namespace {

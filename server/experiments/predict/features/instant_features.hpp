@@ -6,8 +6,8 @@
 
 #include "core/camera/camera_model.hpp"
 #include "core/motion/pose.hpp"
-#include "server/experiments/predict/features.hpp"
-#include "server/experiments/predict/patch_camera.hpp"
+#include "server/experiments/predict/features/features.hpp"
+#include "server/experiments/predict/features/patch_camera.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::server::predict {
