@@ -257,6 +257,7 @@ Status ElevationRaster::find_conversion(GDALDataset& dataset,
   if (layer.nodata) nodata_ = layer.nodata;
   trusted_ = layer.nodata.has_value();
   masked_ = !layer.nodata && (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  has_overviews_ = !layer.nodata && (masked_ || has_nodata != 0) && band.GetOverviewCount() > 0;
 
   auto wgs84_from_crs = CrsTransform::create(place.crs, wgs84_crs(), file_);
   if (!wgs84_from_crs) return wgs84_from_crs.error();

@@ -56,6 +56,11 @@ class ElevationRaster {
   /// Fraction of an area of the map within half a post of the window's posts: exact if the raster
   /// is parallel to the map, else of the area's bounding box in posts.
   [[nodiscard]] double overlap_share(const MapRect& area) const;
+  /// Pixels of the file that are read to have every post once.
+  [[nodiscard]] double pixels_read() const {
+    const double step = has_overviews_ ? 1.0 : step_;
+    return step * step * window_.columns * window_.rows;
+  }
   /// NaN outside, where there is no data, and where the file cannot be read (see `read_error`).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
   [[nodiscard]] std::optional<Error> read_error() const { return posts_->read_error(); }
@@ -121,7 +126,10 @@ class ElevationRaster {
   VoidRuns voids_;
   mutable std::atomic<bool> usual_void_seen_{false};
   std::shared_ptr<BlockCache> cache_;
-  bool masked_ = false;      ///< a mask band marks the posts with data
+  bool masked_ = false;  ///< a mask band marks the posts with data
+  /// Of the file's overviews: false also if they may mix heights with voids that it does not
+  /// declare.
+  bool has_overviews_ = false;
   HeightGrid separation_m_;  ///< of the datum's zero, on a lattice over the window; may be empty
   std::string relation_;
   HeightDatum datum_;

@@ -7,6 +7,36 @@
 #include "terrain/elevation/elevation_raster.hpp"
 
 namespace overfly::terrain {
+namespace {
+
+/// Reads every step-th pixel of a row and of a column, as GDAL chooses them, but from no overview.
+/// @param data  rows of `stride` values
+template <typename Value>
+CPLErr read_thinned(GDALRasterBand& band,
+                    int first_column,
+                    int first_row,
+                    int columns,
+                    int rows,
+                    int step,
+                    Value* data,
+                    int stride,
+                    GDALDataType type) {
+  const int width = columns * step;
+  std::vector<Value> pixels(static_cast<std::size_t>(width));
+  for (int j = 0; j < rows; ++j) {
+    const int row = first_row + j * step + step / 2;
+    const CPLErr outcome = band.RasterIO(
+        GF_Read, first_column, row, width, 1, pixels.data(), width, 1, type, 0, 0, nullptr);
+    if (outcome != CE_None) return outcome;
+    for (int i = 0; i < columns; ++i) {
+      data[static_cast<std::size_t>(j) * stride + i] =
+          pixels[static_cast<std::size_t>(i) * step + step / 2];
+    }
+  }
+  return CE_None;
+}
+
+}  // namespace
 
 /// Posts as in the file; NaN if its mask or its declared value marks them as no data.
 Result<HeightGrid> ElevationRaster::read_numbers(int column, int row, int columns, int rows) const {
@@ -27,6 +57,18 @@ Result<HeightGrid> ElevationRaster::read_numbers(int column, int row, int column
       if (columns_around_) {
         first = (first % *columns_around_ + *columns_around_) % *columns_around_;
         count = std::min(count, *columns_around_ - first);
+      }
+      if (step_ > 1 && !has_overviews_) {
+        outcome = read_thinned(*from,
+                               first * step_,
+                               (window_.row + row) * step_,
+                               count,
+                               rows,
+                               step_,
+                               data + done,
+                               columns,
+                               type);
+        continue;
       }
       outcome = from->RasterIO(GF_Read,
                                first * step_,

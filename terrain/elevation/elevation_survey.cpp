@@ -70,9 +70,11 @@ Status ElevationModel::survey_posts(const std::function<bool()>& cancelled,
                                   static_cast<double>(raster->columns()) * raster->rows(),
                                   {voids.values.begin(), voids.values.end()}});
   }
-  if (survey->posts > kManyPosts) {
+  double read = survey->posts;
+  for (const auto& raster : parts_->rasters) read = std::max(read, raster->pixels_read());
+  if (read > kManyPosts) {
     warnings.push_back(
-        what_ + ": " + count_text(survey->posts) +
+        what_ + ": " + count_text(read) +
         " posts are read whenever this world is opened; `overfly world build` avoids "
         "that");
   }

@@ -108,9 +108,7 @@ std::atomic<int>& idle_handles() {
 
 DatasetPool::DatasetPool(fs::path file, int level, DatasetPtr first)
     : file_(std::move(file)), level_(level), identity_(file_identity(file_)) {
-  if (!first) return;
-  idle_.push_back(std::move(first));
-  ++idle_handles();
+  if (first) keep(std::move(first));
 }
 
 Result<DatasetPtr> DatasetPool::take() {
@@ -150,14 +148,18 @@ Result<DatasetPtr> DatasetPool::open_another() {
 }
 
 void DatasetPool::put(DatasetPtr dataset) {
-  // A world of a thousand files must not exhaust the process's file descriptors.
-  constexpr int kMostIdle = 400;
   const std::lock_guard lock(mutex_);
   --in_use_;
+  keep(std::move(dataset));
+  returned_.notify_one();
+}
+
+void DatasetPool::keep(DatasetPtr dataset) {
+  // A world of a thousand files must not exhaust the process's file descriptors.
+  constexpr int kMostIdle = 400;
   if (idle_handles() >= kMostIdle) return;
   ++idle_handles();
   idle_.push_back(std::move(dataset));
-  returned_.notify_one();
 }
 
 DatasetPool::~DatasetPool() { idle_handles() -= static_cast<int>(idle_.size()); }

@@ -52,6 +52,8 @@ class DatasetPool {
 
  private:
   [[nodiscard]] Result<DatasetPtr> open_another();
+  /// Closes it instead if there are many.
+  void keep(DatasetPtr dataset);
 
   std::filesystem::path file_;
   int level_;

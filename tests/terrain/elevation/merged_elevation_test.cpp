@@ -197,5 +197,30 @@ TEST_F(MergedElevation, OfOneLargeFileContinuesBeyondItsFinePostsWithoutAStep) {
   EXPECT_EQ(world.tiles->height_range_m(), Eigen::Vector2d(0.0, 206.0));
 }
 
+/// Overviews that are averages mix heights with voids that only the manifest declares.
+TEST_F(MergedElevation, OfOneLargeFileTakesNoHeightsFromOverviewsThatMixVoids) {
+  add_picture(8.0);
+  constexpr double kHalfM = 3300.0;
+  constexpr std::uint8_t kVoid = 255;
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(2.0 * kHalfM), 100);
+  std::fill_n(row.begin() + 6002, 9, kVoid);
+  const fs::path file = folder_.path() / "heights.tif";
+  write_equal_rows(file, row, {kMiddleX - kHalfM, 1.0, 0.0, kMiddleY + kHalfM, 0.0, -1.0});
+  {
+    const GDALDatasetUniquePtr raster(GDALDataset::Open(file.c_str(), GDAL_OF_UPDATE));
+    const std::array<int, 1> levels = {4};
+    const CPLErr made =
+        raster->BuildOverviews("AVERAGE", 1, levels.data(), 0, nullptr, nullptr, nullptr);
+    ASSERT_EQ(made, CE_None);
+  }
+  spec_.elevation.emplace_back().file = file;
+  spec_.elevation.back().datum = VerticalDatum::kEllipsoid;
+  spec_.elevation.back().nodata = kVoid;
+  const World world = opened(spec_);
+  EXPECT_THAT(world.warnings, Contains(HasSubstr("far from the imagery: 43560000 posts are read")));
+  EXPECT_EQ(world.tiles->height_range_m(), Eigen::Vector2d(100.0, 100.0));
+  EXPECT_NEAR(height_m(world, 6002.0 - kHalfM, 100.0), 100.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace overfly::terrain
