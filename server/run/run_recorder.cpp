@@ -350,6 +350,10 @@ Status RunRecorder::let_go() {
   Status written = write_json(manifest_file(folder_), json_from(manifest_));
   // Before the end of the run is announced, since others may change the file from then on.
   timeline_->set_manifest_stamp(FileStamp::of(manifest_file(folder_)));
+  if (!written && info_.status == RunStatus::kCompleted) {
+    info_.status = RunStatus::kFailed;
+    info_.error = written.error().message;
+  }
   // A client that learns of the run's end may delete it at once; the lock is therefore released
   // first.
   lock_.reset();

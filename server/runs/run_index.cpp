@@ -70,6 +70,8 @@ bool RunIndex::look_at(int descriptor, const std::string& id, Entry& entry) {
   const FileStamp metrics = FileStamp::of(descriptor, id + "/metrics.json");
   const bool same = manifest == entry.manifest && notes == entry.notes && metrics == entry.metrics;
   if (entry.settled && same) return false;
+  // What was found wrong may have been repaired.
+  if (manifest != entry.manifest || metrics != entry.metrics) entry.fault.clear();
   const bool had_none = entry.info == nullptr;
   entry.manifest = manifest;
   entry.notes = notes;

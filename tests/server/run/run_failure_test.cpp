@@ -197,6 +197,17 @@ TEST_F(RunFailureOfManager, EndThatCannotBeWrittenIsKnownAndLogged) {
   EXPECT_EQ(read_run_info(folder_of(id)).value().status, RunStatus::kInterrupted);
 }
 
+TEST_F(RunFailureOfManager, FlightWhoseEndCannotBeWrittenHasNotCompleted) {
+  const auto runs = std::move(RunManager::create(options()).value());
+  const std::string id =
+      runs->start("small", {{"duration_s", 2}, {"pacing", "real_time"}}).value().id;
+  wait_for_first_frame(*runs->timeline(id).value());
+  fs::create_directory(manifest_file(folder_of(id)).string() + ".part");
+  const RunInfo failed = wait_for_end(*runs, id);
+  EXPECT_EQ(failed.status, RunStatus::kFailed);
+  EXPECT_THAT(failed.error, HasSubstr("manifest.json"));
+}
+
 TEST(RunMemory, GrowsWithCamerasPixelsAndChannels) {
   const auto images_of = [](const std::string& cameras) {
     return memory_of(testing::small_scenario({"cameras=" + cameras})).images_bytes;

@@ -38,10 +38,12 @@ bool is_left(const fs::path& folder) {
 
 /// Removes what programs that were killed have left.
 void remove_left(const fs::path& temporary) {
+  std::error_code failure;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(temporary, ignored)) {
-    const bool is_such = entry.path().filename().string().starts_with(kPrefix);
-    if (is_such && is_left(entry.path())) fs::remove_all(entry.path(), ignored);
+  for (fs::directory_iterator entry(temporary, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    const bool is_such = entry->path().filename().string().starts_with(kPrefix);
+    if (is_such && is_left(entry->path())) fs::remove_all(entry->path(), ignored);
   }
 }
 
@@ -58,6 +60,12 @@ Result<PrivateFolder> PrivateFolder::create() {
                  "cannot make folder " + folder + ": " + std::generic_category().message(errno)};
   }
   FileDescriptor held = opened(folder);
+  if (!held.open()) {
+    Error error{ErrorCode::kIo,
+                "cannot open folder " + folder + ": " + std::generic_category().message(errno)};
+    fs::remove(folder, failure);
+    return error;
+  }
   (void)lock(held);
   return PrivateFolder(folder, std::move(held));
 }
