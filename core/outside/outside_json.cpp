@@ -22,7 +22,7 @@ std::string position_of(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// What the brackets and colons outside strings tell of a text.
+/// Nesting and number of keys of a JSON text, by its brackets and colons outside strings.
 struct Outline {
   bool too_deep = false;
   std::size_t keys = 0;  ///< of all objects together, if it is valid

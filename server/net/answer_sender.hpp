@@ -21,8 +21,8 @@ void send_answer(boost::beast::tcp_stream& stream,
                  std::chrono::milliseconds idle,
                  std::function<void(const boost::beast::error_code&)> done);
 
-/// Tells a client that asked whether its body is welcome, and waits for the answer, that it is
-/// (RFC 9110, section 10.1.1).
+/// Sends "100 Continue" to a client that waits for it before it sends the body (RFC 9110, section
+/// 10.1.1).
 /// @param idle  time for the message and, if the body is read at once, for the body
 /// @param done  called at once if the client does not wait, else on the stream's executor
 void invite_body(boost::beast::tcp_stream& stream,

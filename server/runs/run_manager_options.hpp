@@ -35,7 +35,7 @@ struct RunManagerOptions {
   /// Folders whose files scenarios may name, in addition to `declared_folders(scenarios_folder)`;
   /// never the folders of runs, sweeps and studies. Without a value any regular file may be named.
   std::optional<std::vector<std::filesystem::path>> data_folders;
-  /// Is told of flights that fail: (level, text). Called from several threads; may be empty.
+  /// Logs flights that fail: (level, text). Called from several threads; may be empty.
   std::function<void(const std::string&, const std::string&)> log;
 };
 

@@ -27,9 +27,9 @@ class TimelineShelf {
   [[nodiscard]] Result<std::shared_ptr<RunTimeline>> get(const std::string& id);
   /// Adds the timeline of a run that has just ended.
   void put(const std::string& id, std::shared_ptr<RunTimeline> timeline);
-  /// Of a run that was deleted: its viewers are told.
+  /// For a run that was deleted; notifies its viewers.
   void forget(const std::string& id);
-  /// Updates the metrics of all cached timelines, and tells of deleted runs, for their viewers.
+  /// Updates the metrics of all cached timelines, and reports deleted runs, for their viewers.
   void refresh();
 
  private:

@@ -81,10 +81,10 @@ describe('the dashboard in Firefox', { skip, timeout: 600_000 }, () => {
     await page.keyboard.press('Home');
     await dashboard.untilCursor(0);
     await toggle(true);
-    // The rate is told only while pictures move; a busy machine may reach the end of the flight late.
-    const told = '[data-panel=camera] [data-role=rate]';
-    await dashboard.until((selector) => document.querySelector(selector).title !== '', told);
-    const rate = await page.$eval(told, ({ textContent, title }) => ({ textContent, title }));
+    // The rate is shown only while pictures move; a busy machine may reach the end of the flight late.
+    const badge = '[data-panel=camera] [data-role=rate]';
+    await dashboard.until((selector) => document.querySelector(selector).title !== '', badge);
+    const rate = await page.$eval(badge, ({ textContent, title }) => ({ textContent, title }));
     await dashboard.untilFrames(['timeline', 'camera', 'scene'], 2 * kRate_hz);
     await toggle(false);
     await dashboard.untilSameInstant();

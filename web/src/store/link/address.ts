@@ -26,8 +26,8 @@ export class Address {
   ) {}
 
   /**
-   * To be called when either may have changed. The browser tells of a new address later than it can be
-   * read, so that not its event decides what is new.
+   * To be called when either may have changed. The browser's event for a new address comes later
+   * than the address can be read, so the event does not decide what is new.
    */
   update(): void {
     // Opening changes one part of the screen after the other.

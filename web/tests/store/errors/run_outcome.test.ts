@@ -28,7 +28,7 @@ describe('runOutcome', () => {
     expect(of({ status }, kNothing).text).toBe('flight failed');
   });
 
-  it('tells a score that is on its way from one that there is not', () => {
+  it('distinguishes a score that is being read from a missing one', () => {
     expect(of({}, kNothing, null)).toEqual({ text: kReading, good: null });
     expect(of({}, kNothing).text).toBe('not scored yet');
     expect(of({ status: 'running' }, kNothing).text).toBe('not scored yet');
