@@ -13,7 +13,7 @@ namespace overfly::terrain {
 
 /// Increase whenever the same files would give different tiles or heights, or a cache of before
 /// could not be recognised as up to date.
-inline constexpr int kCacheVersion = 4;
+inline constexpr int kCacheVersion = 5;
 
 struct CacheSource {
   std::string file;  ///< relative to the folder that holds the cache

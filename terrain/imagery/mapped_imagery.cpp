@@ -25,9 +25,10 @@ Eigen::Vector2d texel_size_px(const SmoothMap<2>& pixel_from_map, double texel_m
   const double x = 0.5 * (area.x_min + area.x_max);
   const double y = 0.5 * (area.y_min + area.y_max);
   const Eigen::Vector2d here = pixel_from_map(x, y);
-  const Eigen::Vector2d east = (pixel_from_map(x + texel_m, y) - here).cwiseAbs();
-  const Eigen::Vector2d north = (pixel_from_map(x, y + texel_m) - here).cwiseAbs();
-  return east.cwiseMax(north);
+  const Eigen::Vector2d east = pixel_from_map(x + texel_m, y) - here;
+  const Eigen::Vector2d north = pixel_from_map(x, y + texel_m) - here;
+  // As long as the texel whatever way the file is turned.
+  return (east.cwiseAbs2() + north.cwiseAbs2()).cwiseSqrt();
 }
 
 }  // namespace

@@ -23,16 +23,76 @@ bool has_mask(GDALDataset& dataset, const RasterBands& bands) {
   });
 }
 
+CPLErr read_values(GDALRasterBand& band, int x, int y, const Image& window, float* values) {
+  return band.RasterIO(GF_Read,
+                       x,
+                       y,
+                       window.width_px,
+                       window.height_px,
+                       values,
+                       window.width_px,
+                       window.height_px,
+                       GDT_Float32,
+                       0,
+                       0,
+                       nullptr);
+}
+
+/// The smallest value of a band of transparency that counts as opaque.
+float least_opaque(GDALDataType type) {
+  switch (type) {
+    case GDT_Byte:
+      return 128.0F;
+    case GDT_UInt16:
+      return 32768.0F;
+    case GDT_Int16:
+      return 16384.0F;
+    default:
+      return std::numeric_limits<float>::min();
+  }
+}
+
 /// GDAL's progress callback, called between rows: whether reading continues.
 int CPL_STDCALL ask(double, const char*, void* cancelled) {
   const auto& asked = *static_cast<const Cancelled*>(cancelled);
   return asked && asked() ? FALSE : TRUE;
 }
 
+/// Leaves out what is void by transparency or a mask; in `sample` it becomes NaN.
+CPLErr leave_out_voids(GDALDataset& dataset,
+                       GDALRasterBand& band,
+                       int alpha,
+                       int width,
+                       int height,
+                       std::vector<float>& sample) {
+  if (alpha == 0 && (band.GetMaskFlags() & GMF_ALL_VALID) != 0) return CE_None;
+  GDALRasterBand* const mask = alpha > 0 ? dataset.GetRasterBand(alpha) : band.GetMaskBand();
+  const float least = alpha > 0 ? least_opaque(mask->GetRasterDataType()) : 128.0F;
+  std::vector<float> opacity(sample.size());
+  const CPLErr outcome = mask->RasterIO(GF_Read,
+                                        0,
+                                        0,
+                                        mask->GetXSize(),
+                                        mask->GetYSize(),
+                                        opacity.data(),
+                                        width,
+                                        height,
+                                        GDT_Float32,
+                                        0,
+                                        0,
+                                        nullptr);
+  for (std::size_t i = 0; outcome == CE_None && i < sample.size(); ++i) {
+    if (opacity[i] < least) sample[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return outcome;
+}
+
 /// Adds a sample of one band's values, without those that mark voids.
+/// @param alpha  as RasterBands::alpha
 Status add_sample(GDALDataset& dataset,
                   int band_number,
                   const std::string& file,
+                  int alpha,
                   const std::optional<double>& void_value,
                   const Cancelled& cancelled,
                   std::vector<float>& all) {
@@ -57,7 +117,8 @@ Status add_sample(GDALDataset& dataset,
                      GDT_Float32,
                      0,
                      0,
-                     &questions) != CE_None) {
+                     &questions) != CE_None ||
+      (!void_value && leave_out_voids(dataset, *band, alpha, width, height, sample) != CE_None)) {
     if (Status status = go_on(cancelled, file); !status) return status;
     return Error{ErrorCode::kUnreadable, file + ": cannot be read: " + messages.text()};
   }
@@ -81,7 +142,8 @@ Status find_range(GDALDataset& dataset,
   std::vector<float> sample;
   for (int c = 0; c < 3; ++c) {
     if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
-    Status added = add_sample(dataset, bands.rgb[c], file, bands.nodata, cancelled, sample);
+    Status added =
+        add_sample(dataset, bands.rgb[c], file, bands.alpha, bands.nodata, cancelled, sample);
     if (!added) return added;
   }
   bands.low = std::numeric_limits<double>::infinity();
@@ -139,29 +201,26 @@ CPLErr read_bytes(GDALDataset& dataset, const RasterBands& bands, int x, int y, 
   return outcome;
 }
 
-CPLErr read_rescaled(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& rgb) {
-  const int width = rgb.width_px;
-  const int height = rgb.height_px;
-  std::vector<float> values(static_cast<std::size_t>(width) * height);
+/// @param has_value  one element a texel; left at 0 where no colour band has a finite value
+CPLErr read_rescaled(GDALDataset& dataset,
+                     const RasterBands& bands,
+                     int x,
+                     int y,
+                     Image& rgb,
+                     std::vector<std::uint8_t>& has_value) {
+  std::vector<float> values(has_value.size());
   for (int c = 0; c < 3; ++c) {
-    const CPLErr outcome = dataset.GetRasterBand(bands.rgb[c])
-                               ->RasterIO(GF_Read,
-                                          x,
-                                          y,
-                                          width,
-                                          height,
-                                          values.data(),
-                                          width,
-                                          height,
-                                          GDT_Float32,
-                                          0,
-                                          0,
-                                          nullptr);
+    const CPLErr outcome =
+        read_values(*dataset.GetRasterBand(bands.rgb[c]), x, y, rgb, values.data());
     if (outcome != CE_None) return outcome;
     const double factor = 255.0 / (bands.high - bands.low);
     for (std::size_t i = 0; i < values.size(); ++i) {
+      std::uint8_t& shown = rgb.data[3 * i + c];
+      shown = 0;
+      if (!std::isfinite(values[i])) continue;
       const double scaled = std::clamp((values[i] - bands.low) * factor, 0.0, 255.0);
-      rgb.data[3 * i + c] = static_cast<std::uint8_t>(std::lround(scaled));
+      shown = static_cast<std::uint8_t>(std::lround(scaled));
+      has_value[i] = 1;
     }
   }
   return CE_None;
@@ -174,19 +233,8 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
   const auto nodata = static_cast<float>(*bands.nodata);
   for (int c = 0; c < 3; ++c) {
     if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
-    const CPLErr outcome = dataset.GetRasterBand(bands.rgb[c])
-                               ->RasterIO(GF_Read,
-                                          x,
-                                          y,
-                                          valid.width_px,
-                                          valid.height_px,
-                                          values.data(),
-                                          valid.width_px,
-                                          valid.height_px,
-                                          GDT_Float32,
-                                          0,
-                                          0,
-                                          nullptr);
+    const CPLErr outcome =
+        read_values(*dataset.GetRasterBand(bands.rgb[c]), x, y, valid, values.data());
     if (outcome != CE_None) return outcome;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] != nodata) differs[i] = 1;
@@ -198,9 +246,20 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
   return CE_None;
 }
 
+CPLErr read_alpha(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
+  GDALRasterBand& alpha = *dataset.GetRasterBand(bands.alpha);
+  std::vector<float> values(valid.data.size());
+  const CPLErr outcome = read_values(alpha, x, y, valid, values.data());
+  if (outcome != CE_None) return outcome;
+  const float least = least_opaque(alpha.GetRasterDataType());
+  for (std::size_t i = 0; i < values.size(); ++i) valid.data[i] = values[i] >= least ? 255 : 0;
+  return CE_None;
+}
+
 /// A texel is void if every colour band says so (nodata 0 must not mask a dark red).
 CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   if (bands.nodata) return read_nodata(dataset, bands, x, y, valid);
+  if (bands.alpha > 0) return read_alpha(dataset, bands, x, y, valid);
   std::fill(valid.data.begin(), valid.data.end(), std::uint8_t{0});
   Image one(valid.width_px, valid.height_px, 1);
   for (int c = 0; c < 3; ++c) {
@@ -292,6 +351,7 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
     return Error{ErrorCode::kUnreadable, file + ": has complex samples, not an image"};
   }
   bands.rescaled = bands.type != GDT_Byte;
+  if (!nodata && !has_mask(dataset, bands)) bands.alpha = band_of(dataset, GCI_AlphaBand);
   if (range && !bands.rescaled) {
     return Error{ErrorCode::kInvalidArgument,
                  file + ": samples are 8 bit, which \"range\" does not apply to"};
@@ -309,7 +369,9 @@ Result<RasterBands> find_bands(GDALDataset& dataset,
     if (!found) return found.error();
     bands.unwritten = *found;
   }
-  bands.has_mask = bands.has_mask || bands.nodata || bands.unwritten || has_mask(dataset, bands);
+  const bool may_be_nan = GDALDataTypeIsFloating(bands.type) != 0;
+  bands.has_mask = bands.has_mask || bands.nodata || bands.alpha > 0 || bands.unwritten ||
+                   may_be_nan || has_mask(dataset, bands);
   return bands;
 }
 
@@ -322,12 +384,16 @@ Result<Patch> read_bands(GDALDataset& dataset,
                          int height) {
   const GdalMessages messages;
   Patch patch{Image(width, height, 3), Image(width, height, 1, 255)};
-  CPLErr outcome = bands.rescaled ? read_rescaled(dataset, bands, x, y, patch.rgb)
+  std::vector<std::uint8_t> has_value(bands.rescaled ? patch.valid.data.size() : 0, 0);
+  CPLErr outcome = bands.rescaled ? read_rescaled(dataset, bands, x, y, patch.rgb, has_value)
                                   : read_bytes(dataset, bands, x, y, patch.rgb);
   if (outcome == CE_None && bands.has_mask) {
     outcome = read_mask(dataset, bands, x, y, patch.valid);
     if (bands.palette) mask_palette(dataset, bands, x, y, patch.valid);
     if (bands.unwritten) mask_unwritten(dataset, bands, x, y, patch.valid);
+    for (std::size_t i = 0; i < has_value.size(); ++i) {
+      if (has_value[i] == 0) patch.valid.data[i] = 0;
+    }
     paint_voids(patch);
   }
   if (outcome != CE_None) {

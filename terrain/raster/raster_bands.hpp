@@ -17,6 +17,9 @@ struct RasterBands {
   bool palette = false;
   std::vector<std::array<std::uint8_t, 4>> colours;  ///< of a palette; the fourth is alpha
   bool has_mask = false;
+  /// Number of a band of transparency that GDAL does not relate to the colours: it does so only for
+  /// files of two or four bands. 0 = none.
+  int alpha = 0;
   /// Some blocks of the file were never written: they are void.
   bool unwritten = false;
   /// Value of void texels, given by the manifest instead of the file.

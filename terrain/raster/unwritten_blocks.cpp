@@ -15,6 +15,12 @@ bool was_written(GDALRasterBand& band, int column, int row) {
   return band.GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF") != nullptr;
 }
 
+/// GDAL shows a compressed file of one long strip as rows, for which there is no table of blocks.
+bool has_table_of_blocks(GDALRasterBand& band) {
+  const int status = band.GetDataCoverageStatus(0, 0, 1, 1, 0, nullptr);
+  return (status & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) == 0;
+}
+
 }  // namespace
 
 Result<bool> has_unwritten_blocks(GDALRasterBand& band,
@@ -23,12 +29,14 @@ Result<bool> has_unwritten_blocks(GDALRasterBand& band,
   GDALDataset* dataset = band.GetDataset();
   GDALDriver* driver = dataset != nullptr ? dataset->GetDriver() : nullptr;
   if (driver == nullptr || std::string(driver->GetDescription()) != "GTiff") return false;
+  if (!has_table_of_blocks(band)) return false;
   return any_block(band, file, cancelled, [&](int column, int row) -> Result<bool> {
     return !was_written(band, column, row);
   });
 }
 
 void mask_unwritten_blocks(GDALRasterBand& band, int x, int y, Image& valid) {
+  if (!has_table_of_blocks(band)) return;
   int block_width = 0;
   int block_height = 0;
   band.GetBlockSize(&block_width, &block_height);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
@@ -23,10 +24,12 @@ class RescaledImagery : public ::testing::Test {
   /// Adds a file of 64 x 64 pixels of 2 m to the east of the one before.
   void add(const std::function<double(int x, int y, int band)>& value,
            const std::string& type = "UInt16",
-           int bands = 1) {
+           int bands = 1,
+           const std::vector<std::string>& options = {}) {
     RasterFile raster;
     raster.type = type;
     raster.bands = bands;
+    raster.options = options;
     raster.value = value;
     (*raster.transform)[0] += 128.0 * static_cast<double>(spec_.imagery.size());
     const fs::path file = folder_.path() / ("part" + std::to_string(spec_.imagery.size()) + ".tif");
@@ -99,6 +102,30 @@ TEST_F(RescaledImagery, TakesTheRangeOfTheManifestEvenFromACache) {
   const World changed = opened(spec_);
   EXPECT_THAT(changed.cache, HasSubstr("the manifest has changed"));
   EXPECT_EQ(colour(changed, 64 + 40, 30)[2], 20);
+}
+
+/// Of an orthomosaic the collar around the ground is transparent, whatever its values are.
+TEST_F(RescaledImagery, ChoosesItsRangeWithoutTransparentPixels) {
+  add(
+      [](int x, int, int band) {
+        if (x >= 32) return band == 4 ? 0.0 : 65535.0;
+        return band == 4 ? 65535.0 : 1000.0 + 10.0 * x;
+      },
+      "UInt16",
+      4,
+      {"PHOTOMETRIC=RGB", "ALPHA=YES"});
+  const World world = opened(spec_);
+  EXPECT_NEAR(colour(world, 16, 30)[0], 255.0 * 160.0 / 310.0, 3.0);
+}
+
+TEST_F(RescaledImagery, WithoutNumbersIsVoid) {
+  add([](int x, int, int) { return x < 32 ? 0.01 * x : std::numeric_limits<double>::quiet_NaN(); },
+      "Float32");
+  const World world = opened(spec_);
+  const TileGrid& grid = world.tiles->grid();
+  EXPECT_TRUE(world.tiles->has_imagery(grid.left_x_m + 20.0, grid.top_y_m - 60.0));
+  EXPECT_FALSE(world.tiles->has_imagery(grid.left_x_m + 100.0, grid.top_y_m - 60.0));
+  EXPECT_NEAR(colour(world, 16, 30)[0], 255.0 * 16.0 / 31.0, 3.0);
 }
 
 TEST_F(RescaledImagery, OfEightBitsTakesNoRange) {

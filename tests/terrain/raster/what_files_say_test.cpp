@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "terrain/place/geoid.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -133,6 +135,56 @@ TEST_F(WhatFilesSay, BlocksThatWereNeverWrittenAreNoImagery) {
     EXPECT_EQ(tile->rgb.at(last, 40 >> level, 0), 90) << level;
     EXPECT_EQ(tile->valid.at(last + 1, 40 >> level), 0) << level;
   }
+}
+
+/// GDAL shows a compressed strip of more than 2000 rows as single rows, without a table of blocks.
+TEST_F(WhatFilesSay, OneLongCompressedStripIsImagery) {
+  RasterFile strip;
+  strip.height_px = 2001;
+  strip.bands = 3;
+  strip.options = {"COMPRESS=DEFLATE", "BLOCKYSIZE=2001"};
+  testing::write_raster(path("strip.tif"), strip);
+  WorldSpec spec;
+  spec.imagery.emplace_back().file = path("strip.tif");
+  spec.ground_height_m = 250.0;
+  const auto world = open_world(spec);
+  ASSERT_TRUE(world) << world.error().message;
+  const TileGrid& grid = world->tiles->grid();
+  for (const double below_m : {1.0, 100.0, 3900.0}) {
+    EXPECT_TRUE(world->tiles->has_imagery(grid.left_x_m + 60.0, grid.top_y_m - below_m)) << below_m;
+  }
+}
+
+/// Bands of a multispectral camera: GDAL relates transparency to the colours only of files with two
+/// or four bands.
+TEST_F(WhatFilesSay, TransparencyNextToMoreThanThreeBandsIsNoImagery) {
+  RasterFile picture;
+  picture.bands = 5;
+  picture.options = {"PHOTOMETRIC=RGB", "ALPHA=YES"};
+  picture.value = [](int x, int, int band) { return band == 4 ? (x < 32 ? 255.0 : 0.0) : 90.0; };
+  testing::write_raster(path("five.tif"), picture);
+  WorldSpec spec;
+  spec.imagery.emplace_back().file = path("five.tif");
+  spec.ground_height_m = 250.0;
+  const auto world = open_world(spec);
+  ASSERT_TRUE(world) << world.error().message;
+  const TileGrid& grid = world->tiles->grid();
+  EXPECT_TRUE(world->tiles->has_imagery(grid.left_x_m + 20.0, grid.top_y_m - 60.0));
+  EXPECT_FALSE(world->tiles->has_imagery(grid.left_x_m + 100.0, grid.top_y_m - 60.0));
+}
+
+TEST_F(WhatFilesSay, APixelKeepsItsSizeInAFileThatIsTurned) {
+  RasterFile picture;
+  const double side_m = std::sqrt(2.0);  // 2 m by 2 m, turned by 45 degrees
+  picture.transform = {{583000.0, side_m, side_m, 4357000.0, side_m, -side_m}};
+  testing::write_raster(path("turned.tif"), picture);
+  WorldSpec spec;
+  spec.imagery.emplace_back().file = path("turned.tif");
+  spec.ground_height_m = 250.0;
+  const auto world = open_world(spec);
+  ASSERT_TRUE(world) << world.error().message;
+  EXPECT_THAT(describe(*world),
+              AnyOf(HasSubstr("px of 2 m"), HasSubstr("px of 2.00"), HasSubstr("px of 1.99")));
 }
 
 TEST_F(WhatFilesSay, ASecondLayerFillsWhatTheFirstNeverWrote) {
