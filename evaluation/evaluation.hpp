@@ -188,6 +188,11 @@ struct AlignmentRemarks {
                                        const Options& options,
                                        AlignmentRemarks* remarks = nullptr);
 
+/// Share of the flight's frames, from the first tracked one on, that count as tracked for the
+/// outcome: a short stretch of frames that the estimator never received counts if tracking goes on
+/// in the same map. 0 without a tracked frame. Outcome LOST is one below 0.95.
+[[nodiscard]] double kept_share(const EstimateTrack& estimate, const Options& options);
+
 /// Largest ratio of the estimate's scales in two windows of 10 s, at least 1; infinite if it stood
 /// still in one of them only. Empty if the matches have no such window. Outcome DIVERGED is one
 /// above 2.

@@ -149,6 +149,15 @@ std::optional<double> scale_change(const std::vector<MatchedPose>& matches) {
   return largest->scale > 0.0 ? largest->scale / smallest->scale : 1.0;
 }
 
+double kept_share(const EstimateTrack& estimate, const Options& options) {
+  const std::vector<FlownFrame> flown = flown_frames(estimate, options);
+  const std::vector<bool> held = held_frames(flown);
+  const auto first = std::find_if(flown.begin(), flown.end(), has_pose);
+  if (first == flown.end()) return 0.0;
+  return static_cast<double>(std::count(held.begin(), held.end(), true)) /
+         static_cast<double>(flown.end() - first);
+}
+
 std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate, const Options& options) {
   std::vector<FlownFrame> flown;
   flown.reserve(std::max(options.flight.size(), estimate.samples.size()));

@@ -107,14 +107,6 @@ bool value_matches(const Json& condition, const Json& value) {
          number <= condition.value("max", std::numeric_limits<double>::infinity());
 }
 
-bool is_skipped(const Sweep& sweep, const SweepCell& cell) {
-  return std::any_of(sweep.skip.begin(), sweep.skip.end(), [&](const Json& entry) {
-    return std::all_of(entry.items().begin(), entry.items().end(), [&](const auto& item) {
-      return value_matches(item.value(), cell.values.at(item.key()));
-    });
-  });
-}
-
 Status check_limits(const Json& condition, const std::string& field) {
   for (const auto& [key, value] : condition.items()) {
     if (key != "min" && key != "max") {
@@ -145,6 +137,16 @@ Status check_skip(const Sweep& sweep) {
 
 }  // namespace
 
+bool is_skipped(const std::vector<Json>& skip, const Json& values) {
+  return std::any_of(skip.begin(), skip.end(), [&](const Json& entry) {
+    const auto items = entry.items();
+    return std::all_of(items.begin(), items.end(), [&](const auto& item) {
+      const auto value = values.find(item.key());
+      return value != values.end() && value_matches(item.value(), *value);
+    });
+  });
+}
+
 Result<std::vector<SweepCell>> cells_of(const Sweep& sweep) {
   if (sweep.chosen_cells) return *sweep.chosen_cells;
   if (Status status = check_skip(sweep); !status) return status.error();
@@ -153,7 +155,7 @@ Result<std::vector<SweepCell>> cells_of(const Sweep& sweep) {
   if (!size) return size.error();
   if (Status status = check_size(sweep, *size); !status) return status.error();
   std::vector<SweepCell> cells = drawn ? drawn_cells(sweep, *drawn) : grid_cells(sweep);
-  std::erase_if(cells, [&](const SweepCell& cell) { return is_skipped(sweep, cell); });
+  std::erase_if(cells, [&](const SweepCell& cell) { return is_skipped(sweep.skip, cell.values); });
   if (cells.empty()) {
     return Error{ErrorCode::kInvalidArgument, "skip: must leave at least one cell"};
   }

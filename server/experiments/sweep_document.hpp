@@ -88,6 +88,11 @@ struct Sweep {
 /// grid, a `skip` with an unknown axis, and if no cell is left.
 [[nodiscard]] Result<std::vector<SweepCell>> cells_of(const Sweep& sweep);
 
+/// Whether a cell with these values (of the axes by name) is one of those to be skipped.
+/// @param skip  as Sweep::skip, checked
+[[nodiscard]] bool is_skipped(const std::vector<nlohmann::json>& skip,
+                              const nlohmann::json& values);
+
 /// The scenario of one flight: the seed increases by one with each repeat. With
 /// repeats.vary_start_s the start of repeat k is later by the fractional part of k times the golden
 /// ratio, times that length: a sequence that is spread evenly however many repeats are flown.

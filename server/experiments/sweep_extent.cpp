@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/experiments/sweep_document.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -25,12 +27,29 @@ std::optional<std::int64_t> most_repeats_of(const Json& sweep) {
   return most->get<std::int64_t>();
 }
 
+/// Conditions of the schema's shape; the file may have come from anywhere.
+std::vector<Json> skip_of(const Json& sweep) {
+  std::vector<Json> skip;
+  const auto found = sweep.find("skip");
+  if (found == sweep.end() || !found->is_array()) return skip;
+  const auto is_limit = [](const Json& value) { return value.is_number(); };
+  for (const Json& entry : *found) {
+    if (!entry.is_object() || entry.empty()) continue;
+    const bool valid = std::all_of(entry.begin(), entry.end(), [&](const Json& condition) {
+      return !condition.is_object() || std::all_of(condition.begin(), condition.end(), is_limit);
+    });
+    if (valid) skip.push_back(entry);
+  }
+  return skip;
+}
+
 }  // namespace
 
 SweepExtent::SweepExtent(const Json& sweep) {
   if (!sweep.is_object()) return;
   estimators_ = estimators_of(sweep);
   most_repeats_ = most_repeats_of(sweep);
+  skip_ = skip_of(sweep);
   const auto values = sweep.find("axis_values");
   if (values == sweep.end() || !values->is_object()) return;
   axis_values_.emplace();
@@ -43,7 +62,8 @@ bool SweepExtent::contains(const SweepResult& result) const {
   if (most_repeats_ && result.repeat >= *most_repeats_) return false;
   const bool known =
       std::find(estimators_.begin(), estimators_.end(), result.estimator) != estimators_.end();
-  return (known || estimators_.empty()) && (!axis_values_ || has_cell(result.cell));
+  return (known || estimators_.empty()) && (!axis_values_ || has_cell(result.cell)) &&
+         !is_skipped(skip_, result.cell);
 }
 
 bool SweepExtent::has_cell(const Json& cell) const {

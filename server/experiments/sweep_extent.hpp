@@ -28,6 +28,7 @@ class SweepExtent {
 
   std::vector<std::string> estimators_;
   std::optional<std::map<std::string, std::set<nlohmann::json>>> axis_values_;
+  std::vector<nlohmann::json> skip_;
   std::optional<std::int64_t> most_repeats_;
 };
 

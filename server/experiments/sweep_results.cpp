@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -12,6 +13,7 @@
 
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
+#include "server/experiments/keys/plain_numbers.hpp"
 #include "server/files/plain_name.hpp"
 #include "server/files/whole_file.hpp"
 
@@ -20,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+constexpr std::uint64_t kMaxResultsBytes = std::uint64_t{1} << 30U;
 
 Json json_of_result(const SweepResult& result) {
   return {{"key", result.key},
@@ -67,9 +71,10 @@ std::optional<SweepResult> result_from(const Json& line) {
   }
 }
 
-/// The same for other versions of the program and of the estimator.
+/// The same for other versions of the program and of the estimator, and for another seed of the
+/// sweep's scenario.
 std::string flight_identity(const SweepResult& result) {
-  const Json flight = {result.cell, result.repeat, result.seed, result.estimator};
+  const Json flight = {result.cell, result.repeat, result.estimator};
   return flight.dump();
 }
 
@@ -95,7 +100,7 @@ Result<SweepResults> SweepResults::read(const fs::path& folder) {
   results.file_ = folder / "results.jsonl";
   std::error_code ignored;
   if (!fs::exists(results.file_, ignored)) return results;
-  const Result<std::string> text = read_file_text(results.file_, kMaxRowsBytes);
+  const Result<std::string> text = read_file_text(results.file_, kMaxResultsBytes);
   if (!text) return text.error();
   std::size_t begin = 0;
   for (std::size_t end = 0; (end = text->find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -133,13 +138,16 @@ const SweepResult* SweepResults::find(const std::string& key) const {
 }
 
 bool SweepResults::has(const SweepResult& result) const {
-  const auto found = by_flight_.find(flight_identity(result));
+  SweepResult plain = result;
+  plain.cell = with_plain_numbers(std::move(plain.cell));
+  const auto found = by_flight_.find(flight_identity(plain));
   return found != by_flight_.end() && found->second.key == result.key &&
          found->second.error == result.error;
 }
 
 void SweepResults::keep(SweepResult result) {
   result.line = lines_++;
+  result.cell = with_plain_numbers(std::move(result.cell));
   by_flight_.insert_or_assign(flight_identity(result), result);
   std::string key = result.key;
   by_key_.insert_or_assign(std::move(key), std::move(result));

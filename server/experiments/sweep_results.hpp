@@ -43,14 +43,14 @@ class SweepResults {
 
   /// The newest with this key, whatever its cell and repeat. Null if there is none.
   [[nodiscard]] const SweepResult* find(const std::string& key) const;
-  /// Whether the newest result of this flight (cell, repeat, seed, estimator) has its key and
-  /// error.
+  /// Whether the newest result of this flight (cell, repeat, estimator) has its key and error.
   [[nodiscard]] bool has(const SweepResult& result) const;
   /// Errors: kIo.
   Status add(const SweepResult& result);
   [[nodiscard]] const std::map<std::string, SweepResult>& by_key() const { return by_key_; }
-  /// The newest result of each flight (cell, repeat, seed, estimator). It may be of another version
-  /// of the program or of the estimator until it is flown again. In the order of the lines.
+  /// The newest result of each flight (cell, repeat, estimator). It may be of another version of
+  /// the program or of the estimator, or of another seed, until it is flown again. In the order of
+  /// the lines. Cells have plain numbers (with_plain_numbers).
   [[nodiscard]] std::vector<const SweepResult*> newest() const;
   /// Number of lines that are no results.
   [[nodiscard]] int unreadable_lines() const { return unreadable_lines_; }
@@ -60,7 +60,7 @@ class SweepResults {
 
   std::filesystem::path file_;
   std::map<std::string, SweepResult> by_key_;
-  std::map<std::string, SweepResult> by_flight_;  ///< cell, repeat, seed, estimator -> newest
+  std::map<std::string, SweepResult> by_flight_;  ///< cell, repeat, estimator -> newest
   int unreadable_lines_ = 0;
   std::size_t lines_ = 0;
   std::size_t whole_lines_bytes_ = 0;  ///< size of the file without a last line that was cut off

@@ -144,8 +144,12 @@ Result<Borders> find_borders(const std::vector<GridLine>& lines,
         reversed = !line.survives(0);
         if (*reversed) {
           line.reverse();
-          // Borders of the lines before, which had none.
-          for (std::size_t j = 0; j < i; ++j) guesses[j] = guesses[j] < 0 ? -1 : count - 1;
+          // Lines before have no border: their ends are those of the other direction.
+          for (std::size_t j = 0; j < i; ++j) {
+            guesses[j] = guesses[j] < 0 ? -1 : count - 1;
+            if (found.lines[j].survives) found.lines[j].survives = 0;
+            if (found.lines[j].fails) found.lines[j].fails = values - 1;
+          }
         }
         status = line.bisect(0, count - 1);
       } else if (status) {

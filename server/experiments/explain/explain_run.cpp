@@ -62,7 +62,9 @@ class Explainer {
       if (Status status = (this->*step)(); !status) return status.error();
       if (!result_.reproduced) break;
     }
-    if (control_ != nullptr) {
+    // With the same imagery it was survived.
+    const bool survives_somehow = has_survived(calm_) || !result_.pair.empty();
+    if (control_ != nullptr && (!survives_somehow || holds(result_.necessary, Cause::kTexture))) {
       result_.data_reason = data_limit(*control_, result_.necessary, result_.sufficient);
       result_.data_limited = !result_.data_reason.empty();
     }
@@ -84,7 +86,9 @@ class Explainer {
       const Flown flown = fly({{"as it was", {}, false}});
       if (!flown) return flown.error();
       const Reflight* flight = flown->front();
-      if (flight != nullptr && !flight->error.empty()) {
+      result_.parts_left_out = flight == nullptr;
+      if (flight == nullptr) break;
+      if (!flight->error.empty()) {
         return Error{ErrorCode::kInternal, "cannot be flown again: " + flight->error};
       }
       if (has_failed(flight)) {
@@ -158,11 +162,18 @@ class Explainer {
 
   Status take_away_each() {
     disturbances_ = changeable(true);
+    for (const Cause cause : all_causes()) {
+      if (!is_wanted(cause) && is_disturbance(cause) && !why_unchangeable(document_, cause)) {
+        result_.not_changed.push_back(cause);
+      }
+    }
     if (disturbances_.empty()) {
       calm_ = control_;
       return {};
     }
-    const Flown flown = fly({{"without any disturbance", without_all(disturbances_), false}});
+    const char* const name =
+        result_.not_changed.empty() ? "without any disturbance" : "without all causes to be tried";
+    const Flown flown = fly({{name, without_all(disturbances_), false}});
     if (!flown) return flown.error();
     calm_ = flown->front();
     return fly_without(affordable(disturbances_, 0));
@@ -194,6 +205,7 @@ class Explainer {
 
   /// Flies with one cause as it was and all others taken away.
   Status keep_each() {
+    if (!result_.not_changed.empty()) return {};
     const Causes kept = affordable_kept(candidates());
     Causes others = disturbances_;
     for (const Cause cause : result_.necessary) {
@@ -251,7 +263,9 @@ class Explainer {
     }
     const Flown flown = fly(plan);
     if (!flown) return flown.error();
-    result_.reproduced_with_other_seed = has_failed(flown->front());
+    const Reflight* const control = flown->front();
+    if (!has_failed(control) && !has_survived(control)) return {};  // it has no result
+    result_.reproduced_with_other_seed = has_failed(control);
     if (!*result_.reproduced_with_other_seed) return {};
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (has_failed((*flown)[i + 1])) withdraw(found[i]);

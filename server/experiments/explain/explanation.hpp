@@ -51,6 +51,8 @@ struct Explanation {
   bool succeeded = false;   ///< there is nothing to explain
   CriticalPart part;        ///< in which the failure was seen again
   bool reproduced = false;  ///< the failure was seen again with nothing changed
+  /// The limit of flights ended the search before the failure was seen: not every part was flown.
+  bool parts_left_out = false;
   /// With other random numbers too; empty if that was not flown.
   std::optional<bool> reproduced_with_other_seed;
 
@@ -58,6 +60,9 @@ struct Explanation {
   std::vector<Cause> necessary;
   /// One of these is enough for the failure: with all other disturbances taken away it still fails.
   std::vector<Cause> sufficient;
+  /// Disturbances of the flight that were not to be changed: with them what is sufficient cannot be
+  /// found.
+  std::vector<Cause> not_changed;
   /// Together these are enough, none of them alone.
   std::vector<Cause> together;
   /// Without these the estimator survived, but with other random numbers it fails without them too:

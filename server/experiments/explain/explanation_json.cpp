@@ -75,6 +75,7 @@ Json json_from(const Explanation& explanation, const std::filesystem::path& fold
           {"to_s", explanation.part.to_s},
           {"sufficient", names_of(explanation.sufficient)},
           {"necessary", names_of(explanation.necessary)},
+          {"not_changed", names_of(explanation.not_changed)},
           {"together", names_of(explanation.together)},
           {"withdrawn", names_of(explanation.withdrawn)},
           {"pair", names_of(explanation.pair)},

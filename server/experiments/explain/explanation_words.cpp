@@ -47,6 +47,11 @@ void add_found(const Explanation& explanation, std::vector<std::string>& sentenc
     sentences.push_back("None of them is enough alone: the failure takes " +
                         list_words(explanation.together, words_for) + " together.");
   }
+  if (!explanation.not_changed.empty()) {
+    sentences.push_back("Whether a cause is sufficient was not tried, because " +
+                        list_words(explanation.not_changed, words_for) +
+                        " had to stay as in the flight.");
+  }
   if (!explanation.necessary.empty()) return;
   if (!explanation.sufficient.empty()) {
     const bool several = explanation.sufficient.size() > 1;
@@ -110,6 +115,12 @@ std::vector<std::string> sentences_of(const Explanation& explanation) {
     return {name + " completed this flight: there is nothing to explain."};
   }
   std::vector<std::string> sentences = {name + ": " + outcome_words(explanation.score) + "."};
+  if (!explanation.reproduced && explanation.parts_left_out) {
+    sentences.emplace_back(
+        "Its failure was not seen again in the parts of the flight that were flown. The limit of "
+        "flights left out the longer parts: allow more flights.");
+    return sentences;
+  }
   if (!explanation.reproduced) {
     sentences.emplace_back(
         "Flown again with nothing changed, the estimator survives. The failure cannot be explained "

@@ -75,6 +75,7 @@ class Hunter {
   /// @return the lowest margin of the cell's flights
   Result<double> take_flights(const FlownSweep& flown, std::size_t cell) {
     double lowest = 1.0;
+    int repeat = 0;
     for (const SweepResult* flight : flown.plan.results_of(cell, hunt_.estimator, flown.results)) {
       const SweepCell& flown_cell = flown.plan.cells()[cell];
       if (!flight->completed()) {
@@ -84,7 +85,7 @@ class Hunter {
           read_evidence(options_.flights.folder / flight->run, hunt_.estimator);
       if (!evidence) return evidence.error();
       HuntedFlight hunted{flown_cell,
-                          flight->repeat,
+                          repeat++,  // a flight that cells share has that of another cell
                           flight->seed,
                           flight->run,
                           flight->outcome,

@@ -62,7 +62,7 @@ std::vector<MarginFactor> factors_of(const FlightEvidence& evidence, const Margi
   const auto add = [&](const char* name, double share) {
     factors.push_back({name, std::clamp(share, 0.0, 1.0)});
   };
-  add("tracked", (evidence.tracked_share - kTrackedLimit) / (1.0 - kTrackedLimit));
+  add("tracked", (evidence.kept_share - kTrackedLimit) / (1.0 - kTrackedLimit));
   add("start",
       1.0 - evidence.score.initialised_at_s.value_or(0.0) /
                 latest_allowed_start_s(evidence.duration_s));
@@ -110,19 +110,10 @@ std::optional<double> lowest_points(const EstimatorRecords& estimator) {
   return lowest;
 }
 
-double tracked_share(const RunRecords& records, const EstimatorRecords& estimator) {
-  std::optional<std::int64_t> first;
-  std::size_t tracked = 0;
-  for (const EstimateRecord& record : estimator.records) {
-    if (record.dropped || record.sample.state != TrackingState::kTracking) continue;
-    if (!first) first = record.sample.frame;
-    ++tracked;
-  }
-  if (!first) return 0.0;
-  const auto frames = flight_frames(records, records.camera_of(estimator));
-  const auto after = std::count_if(
-      frames.begin(), frames.end(), [&](const auto& frame) { return frame.frame >= *first; });
-  return after == 0 ? 0.0 : static_cast<double>(tracked) / static_cast<double>(after);
+double kept_share_of(const RunRecords& records, const EstimatorRecords& estimator) {
+  evaluation::Options options;
+  options.flight = flight_frames(records, records.camera_of(estimator));
+  return evaluation::kept_share(track_of(estimator), options);
 }
 
 std::optional<double> scale_change_of(const RunRecords& records,
@@ -178,7 +169,7 @@ Result<FlightEvidence> read_evidence(const std::filesystem::path& run_folder,
   evidence.score = scored->second.score;
   evidence.duration_s = metrics->flight.duration_s;
   evidence.path_length_m = metrics->flight.path_length_m;
-  evidence.tracked_share = tracked_share(*records, *recorded);
+  evidence.kept_share = kept_share_of(*records, *recorded);
   evidence.lowest_points = lowest_points(*recorded);
   evidence.scale_change = scale_change_of(*records, *recorded);
   return evidence;

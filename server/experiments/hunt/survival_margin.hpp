@@ -22,8 +22,8 @@ struct FlightEvidence {
   evaluation::Score score;  ///< without the errors of each pose
   double duration_s = 0.0;
   double path_length_m = 0.0;
-  /// Share of the flight's frames after initialisation that were tracked.
-  double tracked_share = 0.0;
+  /// As evaluation::kept_share.
+  double kept_share = 0.0;
   /// Smallest mean over half a second of the points that carried a pose; empty if the estimator
   /// does not report them.
   std::optional<double> lowest_points;

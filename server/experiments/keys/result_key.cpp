@@ -10,6 +10,7 @@
 #include "core/measure/sha256.hpp"
 #include "core/outside/file_text.hpp"
 #include "core/outside/outside_json.hpp"
+#include "server/experiments/keys/plain_numbers.hpp"
 #include "server/experiments/keys/program_files.hpp"
 #include "server/experiments/keys/script_modules.hpp"
 #include "server/files/file_stamp.hpp"
@@ -25,6 +26,8 @@ using Json = nlohmann::json;
 
 /// Larger files are compared by size and time: imagery of gigabytes is not read for each flight.
 constexpr std::uint64_t kMostHashedBytes = std::uint64_t{1} << 20U;
+/// Enough for the images of an hour.
+constexpr std::size_t kMostFolderFiles = 200'000;
 
 std::string digest_of(const std::string& text) {
   return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -42,8 +45,27 @@ struct NamedFiles {
 
 void add_named_files(const Json& value, const fs::path& folder, bool follow, NamedFiles& files);
 
+/// The names, sizes and times of a folder's files: images of a data set, records of a run.
+void add_folder(const fs::path& folder, NamedFiles& files) {
+  std::vector<std::string> entries;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end;
+       !error && entry != end && entries.size() < kMostFolderFiles;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (!entry->is_regular_file(ignored)) continue;
+    entries.push_back(entry->path().string() + " " + stamp_text(FileStamp::of(entry->path())));
+  }
+  std::sort(entries.begin(), entries.end());
+  for (const std::string& entry : entries) files.text += "\n" + entry;
+}
+
+/// @param follow  whether folders, and the files named by JSON files, count too
 void add_file(const fs::path& file, bool follow, NamedFiles& files) {
-  if (!files.sources.check_place(file, "file") || !check_regular_file(file).ok()) return;
+  if (!files.sources.check_place(file, "file")) return;
+  std::error_code ignored;
+  if (follow && fs::is_directory(file, ignored)) return add_folder(file, files);
+  if (!check_regular_file(file).ok()) return;
   std::string& text = files.text;
   text += "\n" + file.string() + " ";
   const Result<std::string> content = read_file_text(file, kMostHashedBytes);
@@ -57,7 +79,7 @@ void add_file(const fs::path& file, bool follow, NamedFiles& files) {
   if (document) add_named_files(*document, file.parent_path(), false, files);
 }
 
-/// @param follow  whether the files named by JSON files count too
+/// @param follow  as for add_file
 // NOLINTNEXTLINE(misc-no-recursion): documents from outside are at most kMaxJsonDepth deep
 void add_named_files(const Json& value, const fs::path& folder, bool follow, NamedFiles& files) {
   constexpr std::size_t kLongestName = 4096;
@@ -68,7 +90,8 @@ void add_named_files(const Json& value, const fs::path& folder, bool follow, Nam
   if (!value.is_string()) return;
   const auto& name = value.get_ref<const std::string&>();
   if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) return;
-  add_file((folder / name).lexically_normal(), follow, files);
+  // A text such as "auto" is no folder of the root.
+  add_file((folder / name).lexically_normal(), follow && name.front() == '/', files);
 }
 
 /// The words of a command; those before the first that is no text.
@@ -103,7 +126,7 @@ std::string digest_of_modules(const std::vector<fs::path>& modules) {
 }  // namespace
 
 std::string flight_key(const Scenario& scenario) {
-  Json document = scenario.resolved;
+  Json document = with_plain_numbers(scenario.resolved);
   for (const char* name : {"$schema", "name", "title", "description", "estimators"}) {
     document.erase(name);
   }
@@ -113,7 +136,7 @@ std::string flight_key(const Scenario& scenario) {
 }
 
 std::string result_key(const std::string& flight, const Json& estimator) {
-  NamedFiles files{{}, flight + "\n" + estimator.dump()};
+  NamedFiles files{{}, flight + "\n" + with_plain_numbers(estimator).dump()};
   add_named_files(estimator, "/", false, files);
   const std::vector<std::string> command = command_of(estimator);
   if (!command.empty()) {

@@ -94,17 +94,19 @@ std::vector<OrderingAgreement> ordering_agreements(
     std::size_t convention,
     const PublishedErrors& published,
     const std::map<std::string, std::string>& counterparts) {
-  std::map<const PublishedCell*, ComparedCell> cells;
+  // A published cell may have several cells here: those of a further axis.
+  std::map<std::pair<nlohmann::json, const PublishedCell*>, ComparedCell> cells;
   for (const CellScores& row : rows) {
     const auto name = counterparts.find(row.estimator);
     const PublishedCell* const cell = published.find(row.cell);
     if (name == counterparts.end() || cell == nullptr) continue;
     const CellErrors& errors = row.errors[convention];
+    const std::pair own(row.cell, cell);
     if (errors.position_m) {
-      cells[cell].position_m[name->second] = errors.position_m->quartiles.median;
+      cells[own].position_m[name->second] = errors.position_m->quartiles.median;
     }
     if (errors.rotation_deg) {
-      cells[cell].rotation_deg[name->second] = errors.rotation_deg->quartiles.median;
+      cells[own].rotation_deg[name->second] = errors.rotation_deg->quartiles.median;
     }
   }
   std::vector<OrderingAgreement> agreements;
@@ -112,9 +114,9 @@ std::vector<OrderingAgreement> ordering_agreements(
     for (std::size_t j = i + 1; j < published.estimators.size(); ++j) {
       OrderingAgreement position{published.estimators[i], published.estimators[j], "position_m"};
       OrderingAgreement rotation{published.estimators[i], published.estimators[j], "rotation_deg"};
-      for (const auto& [cell, own] : cells) {
-        add_cell(own.position_m, cell->position_m, i, j, position);
-        add_cell(own.rotation_deg, cell->rotation_deg, i, j, rotation);
+      for (const auto& [place, own] : cells) {
+        add_cell(own.position_m, place.second->position_m, i, j, position);
+        add_cell(own.rotation_deg, place.second->rotation_deg, i, j, rotation);
       }
       if (position.cells > 0) agreements.push_back(std::move(position));
       if (rotation.cells > 0) agreements.push_back(std::move(rotation));

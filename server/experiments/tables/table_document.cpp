@@ -113,7 +113,8 @@ std::string latex_table(const DocumentSection& section) {
                      joined(section.notes, "", " ", latex_text) + "}\n\\begin{tabular}{" + columns +
                      "}\n\\toprule\n" + head + " \\\\\n\\midrule\n";
   for (const std::vector<TableCell>& row : section.table.rows) {
-    std::string line;
+    // A row that began with "[" or "*" would be an argument of the line end before it.
+    std::string line = "{}";
     for (const TableCell& cell : row) {
       const std::string shown = latex_text(cell.text);
       line += (&cell == row.data() ? "" : " & ") + (cell.best ? "\\textbf{" + shown + "}" : shown);

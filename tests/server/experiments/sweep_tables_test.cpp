@@ -72,7 +72,7 @@ class SweepTablesTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  void add(const Made& made, const std::string& key = "") {
+  void add(const Made& made, const std::string& key = "", std::uint64_t first_seed = 1) {
     const std::string id =
         key.empty() ? "r" + std::to_string(number_) : key + std::to_string(number_);
     ++number_;
@@ -97,7 +97,7 @@ class SweepTablesTest : public ::testing::Test {
         << Json{{"key", id},
                 {"cell", {{"h", made.height_m}}},
                 {"repeat", made.repeat},
-                {"seed", 1 + made.repeat},
+                {"seed", first_seed + static_cast<std::uint64_t>(made.repeat)},
                 {"estimator", made.estimator},
                 {"run", "runs/" + id},
                 {"status", "completed"},
@@ -290,22 +290,24 @@ TEST_F(SweepTablesTest, LeavesOutFlightsThatTheSweepNoLongerHas) {
       << Json{{"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
               {"axis_values", {{"h", {50, 100}}}},
               {"repeats", {{"most", 2}}},
+              {"skip", Json::array({{{"h", {{"min", 80}}}}})},
               {"estimator_names", {"one"}}};
   add({"one", 50, 0, 1.0, 0.1});
   add({"one", 50, 1, 3.0, 0.1});
   add({"one", 50, 2, 90.0, 0.1});   // a repeat of an earlier version of the sweep
   add({"one", 150, 0, 90.0, 0.1});  // another height
+  add({"one", 100, 0, 90.0, 0.1});  // one that is skipped now
   add({"two", 50, 0, 90.0, 0.1});   // another estimator
   const SweepTables made = tables();
   ASSERT_EQ(made.rows.size(), 1U);
   EXPECT_EQ(made.rows[0].estimator, "one");
   EXPECT_EQ(made.rows[0].flights, 2);
-  EXPECT_THAT(markdown(), HasSubstr("3 results of flights that the sweep no longer has"));
+  EXPECT_THAT(markdown(), HasSubstr("4 results of flights that the sweep no longer has"));
 }
 
 TEST_F(SweepTablesTest, TakesTheNewestResultOfAFlight) {
-  add({"one", 50, 0, 7.0, 0.1}, "z");  // an older version's, with a key that sorts last
-  add({"one", 50, 0, 1.0, 0.1}, "a");
+  add({"one", 50, 0, 7.0, 0.1}, "z");      // an older version's, with a key that sorts last
+  add({"one", 50, 0, 1.0, 0.1}, "a", 77);  // also with another seed of the scenario
   const SweepTables made = tables();
   ASSERT_EQ(made.rows.size(), 1U);
   EXPECT_EQ(made.rows[0].flights, 1);
@@ -365,7 +367,8 @@ TEST_F(SweepTablesTest, EscapesTextInEveryFormat) {
   EXPECT_THAT(html_from(document), HasSubstr("&lt;script&gt; &amp;"));
   EXPECT_THAT(latex_from(document), HasSubstr("\\begin{tabular}{rrrrrrr}"));
   EXPECT_THAT(latex_from(document), HasSubstr("Height [m] & one position [m]"));
-  EXPECT_THAT(csv_from(made), HasSubstr("50.0,one,paper,1,1,1,"));
+  EXPECT_THAT(latex_from(document), HasSubstr("\\midrule\n{}50 & "));
+  EXPECT_THAT(csv_from(made), HasSubstr("50,one,paper,1,1,1,"));
 }
 
 TEST_F(SweepTablesTest, ComparesTheScaleAtTheStartWithThatOfTheWholeFlight) {

@@ -247,6 +247,35 @@ TEST_F(ExplainRun, TriesOnlyTheCausesThatAreAskedFor) {
   }
 }
 
+/// The other disturbances stay: that the cause is enough without them was not seen.
+TEST_F(ExplainRun, NamesNoSufficientCauseWhereOthersHadToStay) {
+  causes_ = {Cause::kBlur};
+  const auto explanation = explain("has blur");
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_THAT(explanation->necessary, ElementsAre(Cause::kBlur));
+  EXPECT_THAT(explanation->sufficient, IsEmpty());
+  EXPECT_THAT(explanation->not_changed,
+              UnorderedElementsAre(Cause::kFaults, Cause::kDrops, Cause::kNoise));
+  EXPECT_THAT(sentences_of(*explanation), ::testing::Contains(HasSubstr("had to stay")));
+}
+
+TEST_F(ExplainRun, SaysThatTheLimitLeftOutLongerParts) {
+  const auto explanation = explain("false", 1);
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_FALSE(explanation->reproduced);
+  EXPECT_TRUE(explanation->parts_left_out);
+  EXPECT_THAT(sentences_of(*explanation), ::testing::Contains(HasSubstr("allow more flights")));
+}
+
+/// A flight without a result neither survived nor failed.
+TEST_F(ExplainRun, ConcludesNothingFromAFlightWithoutResult) {
+  const auto explanation =
+      explain("if has seed1; then has blur; else echo out of memory >&2; exit 1; fi");
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_THAT(explanation->necessary, ElementsAre(Cause::kBlur));
+  EXPECT_FALSE(explanation->reproduced_with_other_seed.has_value());
+}
+
 TEST_F(ExplainRun, FliesNothingTwice) {
   ASSERT_TRUE(explain("has blur").ok());
   const std::size_t flown = calls_made();

@@ -26,7 +26,7 @@ FlightEvidence good_flight() {
   evidence.score.alignments[AlignmentMode::kInitScale].position_m.rmse = 5.0;
   evidence.duration_s = 40.0;
   evidence.path_length_m = 1000.0;
-  evidence.tracked_share = 0.99;
+  evidence.kept_share = 0.99;
   evidence.lowest_points = 300.0;
   evidence.scale_change = 1.25;
   return evidence;
@@ -61,7 +61,7 @@ TEST(SurvivalMargin, FallsWithEveryQuantity) {
     change(evidence);
     return margin_of(evidence, {}).value;
   };
-  EXPECT_LT(changed([](auto& e) { e.tracked_share = 0.97; }), before);
+  EXPECT_LT(changed([](auto& e) { e.kept_share = 0.97; }), before);
   EXPECT_LT(changed([](auto& e) { e.score.initialised_at_s = 2.0; }), before);
   EXPECT_LT(changed([](auto& e) { e.lowest_points = 100.0; }), before);
   EXPECT_LT(changed([](auto& e) { e.scale_change = 1.5; }), before);
@@ -125,7 +125,7 @@ TEST(SurvivalMargin, ReadsItsEvidenceFromARun) {
   EXPECT_EQ(evidence->score.outcome, Outcome::kCompleted);
   EXPECT_NEAR(evidence->duration_s, 1.9, 0.2);
   EXPECT_GT(evidence->path_length_m, 10.0);
-  EXPECT_DOUBLE_EQ(evidence->tracked_share, 1.0);
+  EXPECT_DOUBLE_EQ(evidence->kept_share, 1.0);
   EXPECT_FALSE(evidence->lowest_points.has_value()) << "it reports none";
   EXPECT_FALSE(evidence->scale_change.has_value()) << "shorter than a window of 10 s";
   EXPECT_GT(margin_of(*evidence, {}).value, 0.9);

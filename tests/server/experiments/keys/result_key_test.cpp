@@ -36,6 +36,32 @@ TEST(FlightKey, FollowsEveryFieldButNamesAndEstimators) {
   }
 }
 
+TEST(FlightKey, IsTheSameForEqualNumbers) {
+  EXPECT_EQ(flight_key_of({"flight.course.airspeed_m_s=17"}),
+            flight_key_of({"flight.course.airspeed_m_s=17.0"}));
+  const Json whole = {{"name", "a"}, {"parameters", {{"levels", 3}, {"scale", 1.25}}}};
+  const Json real = {{"name", "a"}, {"parameters", {{"levels", 3.0}, {"scale", 1.25}}}};
+  EXPECT_EQ(result_key("flight", whole), result_key("flight", real));
+}
+
+TEST(FlightKey, FollowsTheFilesOfAFolder) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "set" / "images");
+  write_text(folder.path() / "set" / "images" / "1.png", "one");
+  const auto key = [&] {
+    Scenario scenario = server::testing::small_scenario({});
+    scenario.resolved["camera"]["images"] = {{"source", (folder.path() / "set").string()}};
+    return flight_key(scenario);
+  };
+  const std::string first = key();
+  EXPECT_EQ(key(), first);
+  write_text(folder.path() / "set" / "images" / "1.png", "other");
+  const std::string changed = key();
+  EXPECT_NE(changed, first);
+  write_text(folder.path() / "set" / "data.csv", "list");
+  EXPECT_NE(key(), changed);
+}
+
 TEST(FlightKey, FollowsTheDataOfTheWorld) {
   const TemporaryFolder folder;
   const auto key_with = [&](const std::string& elevation) {
