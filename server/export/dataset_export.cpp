@@ -112,6 +112,10 @@ bool keeps_going(const ExportOptions& options) {
   return options.cancel == nullptr || !options.cancel->load();
 }
 
+bool was_cancelled(const Result<std::optional<MadeFrame>>& frame) {
+  return !frame && frame.error().code == ErrorCode::kCancelled;
+}
+
 /// As the run's estimators were given it; for a scenario that was never flown the same, made again.
 Result<CameraModel> calibrated_model(const ExportSource& source,
                                      const CameraSpec& camera,
@@ -192,6 +196,7 @@ Status write_frames(const ExportOptions& options,
                     ExportSummary& summary) {
   while (keeps_going(options)) {
     Result<std::optional<MadeFrame>> frame = frames.next();
+    if (was_cancelled(frame)) break;  // what is complete is kept
     if (!frame) return frame.error();
     if (!frame->has_value()) return outputs.finish(rate);
     if (Status status = samples.add_to(**frame); !status) return status;

@@ -36,6 +36,10 @@ Result<VideoSummary> export_video(const ExportSource& source, const VideoOptions
       break;
     }
     Result<std::optional<MadeFrame>> frame = (*frames)->next();
+    if (!frame && frame.error().code == ErrorCode::kCancelled) {
+      summary.cancelled = true;
+      break;
+    }
     if (!frame) return frame.error();
     if (!frame->has_value()) break;
     if (Status status = video.add(**frame); !status) return status.error();

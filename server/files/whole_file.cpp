@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -34,7 +35,9 @@ bool write_all(int descriptor, const char* bytes, std::size_t size) {
 
 Status write_bytes(const fs::path& file, const char* bytes, std::size_t size) {
   const fs::path part = file.string() + ".part";
-  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  // What is left of an earlier write, or a link or a FIFO in a folder that came from elsewhere.
+  ::unlink(part.c_str());
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (descriptor < 0) return io_error(part, "create");
   const bool written = write_all(descriptor, bytes, size);
   const int write_errno = errno;
@@ -44,7 +47,11 @@ Status write_bytes(const fs::path& file, const char* bytes, std::size_t size) {
     ::unlink(part.c_str());
     return error;
   }
-  if (::rename(part.c_str(), file.c_str()) != 0) return io_error(file, "rename to");
+  if (::rename(part.c_str(), file.c_str()) != 0) {
+    Error error = io_error(file, "rename to");
+    ::unlink(part.c_str());
+    return error;
+  }
   return {};
 }
 
@@ -119,19 +126,36 @@ Status LineFile::append(const nlohmann::json& line) {
 
 Status for_each_line(const fs::path& file,
                      const std::function<Status(const nlohmann::json&)>& take) {
-  const Result<std::string> text = read_file_text(file, kMaxRowsBytes);
-  if (!text && text.error().code == ErrorCode::kNotFound) return {};
-  if (!text) return text.error();
-  std::string_view rest = *text;
+  std::string line;  // what is there of it so far
   std::size_t row = 0;
-  for (std::size_t end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {
+  Status status;
+  std::atomic<bool> failed = false;
+  const auto take_line = [&]() -> Status {
     const std::string origin = file.string() + ", row " + std::to_string(++row);
-    const Result<nlohmann::json> line = parse_json(rest.substr(0, end), origin);
-    if (!line) return line.error();
-    if (Status status = take(*line); !status) return status.error().in(origin);
-    rest.remove_prefix(end + 1);
-  }
-  return {};
+    const Result<nlohmann::json> document = parse_json(line, origin);
+    if (!document) return document.error();
+    if (Status taken = take(*document); !taken) return taken.error().in(origin);
+    return {};
+  };
+  const Status read = read_file_pieces(file, kMaxRowsBytes, &failed, [&](std::string_view piece) {
+    while (status && !piece.empty()) {
+      const std::size_t end = piece.find('\n');
+      line += piece.substr(0, end);
+      if (line.size() > kMaxRowBytes) {
+        status = Error{ErrorCode::kUnreadable,
+                       file.string() + ", row " + std::to_string(row + 1) + ": is longer than " +
+                           std::to_string(kMaxRowBytes) + " bytes"};
+      }
+      if (end == std::string_view::npos) break;
+      if (status) status = take_line();
+      line.clear();
+      piece.remove_prefix(end + 1);
+    }
+    failed = !status;
+  });
+  if (!status) return status;
+  if (!read && read.error().code == ErrorCode::kNotFound) return {};
+  return read;
 }
 
 Result<std::vector<nlohmann::json>> read_lines(const fs::path& file) {

@@ -26,8 +26,11 @@ namespace overfly::server {
 
 /// Limit for a document; enough for the timings of a day's flight.
 inline constexpr std::uint64_t kMaxDocumentBytes = std::uint64_t{256} << 20U;
-/// Limit for a file of rows; enough for the frames of most of a day.
-inline constexpr std::uint64_t kMaxRowsBytes = std::uint64_t{1} << 30U;
+/// Limit for a file of rows, which are kept in memory: at 31 Hz for several days, at 1000 Hz with
+/// covariances for two hours.
+inline constexpr std::uint64_t kMaxRowsBytes = std::uint64_t{8} << 30U;
+/// Limit for a row of a file; many times one with covariance and counters.
+inline constexpr std::uint64_t kMaxRowBytes = std::uint64_t{1} << 20U;
 
 /// Errors: as read_file_text; kUnreadable naming file, line and column, or the limit of its depth.
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,

@@ -49,10 +49,12 @@ class FolderImages final : public ImageSource {
   [[nodiscard]] const std::vector<std::int64_t>& stamps_ns() const override { return stamps_ns_; }
   [[nodiscard]] Result<Image> read(std::size_t i) override {
     const DatasetImage& entry = dataset_.images.at(i);
-    // A list may name files outside of the folder.
-    Status allowed = sources_.check(entry.file.lexically_normal(), "images of the camera");
+    // A list may name files outside of the folder. The path that is checked is the one that is
+    // read: after a link, ".." leads elsewhere.
+    const fs::path file = entry.file.lexically_normal();
+    Status allowed = sources_.check(file, "images of the camera");
     if (!allowed) return allowed.error();
-    Result<Image> image = read_grey_image(entry.file, dataset_.sample_bits);
+    Result<Image> image = read_grey_image(file, dataset_.sample_bits);
     if (!image) return image.error().in(entry.listed_at);
     return image;
   }

@@ -28,7 +28,12 @@ HttpAnswer http_answer(HttpResponse response, unsigned version, bool keep_alive,
   const std::size_t body_bytes = response.body.size();
   if (!head) answer.body() = std::move(response.body);
   answer.prepare_payload();
-  if (head) answer.content_length(body_bytes);
+  // RFC 9110, 8.6: no length for 204, and for 304 only that of the whole answer.
+  if (response.status == 204 || response.status == 304) {
+    answer.erase(http::field::content_length);
+  } else if (head) {
+    answer.content_length(body_bytes);
+  }
   return answer;
 }
 

@@ -33,7 +33,7 @@ Result<RunLock> RunLock::take(const fs::path& folder) {
   const fs::path file = file_of(folder);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (attempt > 0) std::this_thread::sleep_for(kPause);
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (descriptor < 0) {
       return Error{ErrorCode::kIo, file.string() + ": cannot create: " + std::strerror(errno)};
     }
@@ -46,7 +46,9 @@ Result<RunLock> RunLock::take(const fs::path& folder) {
 }
 
 bool RunLock::held(const fs::path& folder) {
-  const int descriptor = ::open(file_of(folder).c_str(), O_RDWR | O_CLOEXEC);
+  // Only to read: the folder may be of another user, or be mounted to be read only.
+  const int descriptor =
+      ::open(file_of(folder).c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   if (descriptor < 0) return false;
   const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(descriptor);

@@ -261,8 +261,8 @@ Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
     if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
     Result<std::optional<Pending>> made = make_frame(k);
     if (!made || !*made) {
-      const Status logged = cancelled() ? Status() : log_end_of_flight();
-      return made ? logged : made.error();
+      if (!made) return made.error();
+      return cancelled() ? stopped() : log_end_of_flight();
     }
     if (Status status = record_events(EstimatorWorker::kAllFrames); !status) return status;
     send(**made);

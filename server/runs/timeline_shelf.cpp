@@ -10,6 +10,9 @@ namespace overfly::server {
 
 namespace {
 
+/// How long a timeline of a run that another process writes is kept at least.
+constexpr std::chrono::seconds kShortestFresh{1};
+
 /// For its viewers, who keep what was read.
 void tell_deleted(RunTimeline& timeline) {
   RunInfo info = timeline.info();
@@ -31,6 +34,7 @@ bool TimelineShelf::is_fresh(Entry& entry) const {
   const FileStamp manifest = FileStamp::of(manifest_file(places_.of(entry.id)));
   if (!manifest.exists) tell_deleted(*entry.timeline);
   if (!manifest.exists || manifest != entry.timeline->manifest_stamp()) return false;
+  if (entry.fresh_until && std::chrono::steady_clock::now() > *entry.fresh_until) return false;
   const Entry now = entry_of(entry.id);
   if (now.metrics == entry.metrics && entry.metrics_settled) return true;
   entry.metrics = now.metrics;
@@ -62,6 +66,7 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
   // Read without the lock, since a long run takes time. The stamp is taken first: a change
   // meanwhile is seen at the next call.
   Entry entry = entry_of(id);
+  const auto begin = std::chrono::steady_clock::now();
   Result<std::shared_ptr<RunTimeline>> opened = RunTimeline::open(places_.of(id));
   if (!opened) return opened.error();
   if (RunInfo info = (*opened)->info(); info.id != id) {
@@ -69,8 +74,12 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
     (*opened)->set_info(info);
   }
   entry.timeline = *opened;
-  // A run that another process still writes is not cached.
-  if ((*opened)->info().status != RunStatus::kRunning) keep(std::move(entry));
+  // A run that another process still writes is read again, but not for every picture.
+  if ((*opened)->info().status == RunStatus::kRunning) {
+    const auto end = std::chrono::steady_clock::now();
+    entry.fresh_until = end + kShortestFresh + 4 * (end - begin);
+  }
+  keep(std::move(entry));
   return opened;
 }
 
@@ -85,7 +94,10 @@ void TimelineShelf::keep(Entry entry) {
   const std::lock_guard lock(mutex_);
   std::erase_if(entries_, [&](const Entry& other) { return other.id == entry.id; });
   entries_.push_front(std::move(entry));
-  if (entries_.size() > kMostTimelines) entries_.pop_back();
+  std::size_t unused = 0;
+  std::erase_if(entries_, [&](const Entry& other) {
+    return other.timeline.use_count() == 1 && ++unused > kMostUnused;
+  });
 }
 
 void TimelineShelf::forget(const std::string& id) {

@@ -1,10 +1,12 @@
 // Cache of the timelines of runs that are over, valid while their folders are unchanged.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,10 +17,10 @@
 
 namespace overfly::server {
 
-/// Thread-safe. Keeps the most recently used ones.
+/// Thread-safe. Keeps the most recently used ones, and those that somebody else holds.
 class TimelineShelf {
  public:
-  static constexpr std::size_t kMostTimelines = 8;
+  static constexpr std::size_t kMostUnused = 8;
 
   explicit TimelineShelf(RunPlaces places) : places_(std::move(places)) {}
 
@@ -38,6 +40,8 @@ class TimelineShelf {
     std::shared_ptr<RunTimeline> timeline;
     FileStamp metrics;
     bool metrics_settled = false;
+    /// Until when a run that another process still writes counts as unchanged.
+    std::optional<std::chrono::steady_clock::time_point> fresh_until;
   };
   [[nodiscard]] Entry entry_of(const std::string& id) const;
   /// False if the entry's folder no longer exists. @pre mutex_ is held

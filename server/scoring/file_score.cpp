@@ -1,6 +1,7 @@
 #include "server/scoring/file_score.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -22,7 +23,8 @@ Result<std::optional<double>> comment_number(const NamedTrajectory& trajectory,
   try {
     std::size_t used = 0;
     const double value = std::stod(comment->second, &used);
-    if (used == comment->second.size() && value > 0.0) return std::optional<double>(value);
+    const bool valid = used == comment->second.size() && std::isfinite(value) && value > 0.0;
+    if (valid) return std::optional<double>(value);
   } catch (const std::exception&) {
     // Reported below, with all values that are not positive numbers.
   }

@@ -87,7 +87,11 @@ ViewPainter::Painted ViewPainter::paint_scene(const PictureRequest& request,
   if (*view == nullptr) return std::optional<Picture>();
   const SceneSettings& settings = request.scene;
   // Only here, where no reference to one of them is held: a run may be scored at any time.
-  ribbons_.remove_if([](const ViewRibbons& known) { return known.is_outdated(); });
+  ribbons_.remove_if([&](const ViewRibbons& known) {
+    const bool was_read_again =
+        known.timeline() != timeline && known.timeline()->info().id == request.run_id;
+    return was_read_again || known.is_outdated();
+  });
   ViewRibbons& ribbons = ribbons_of(timeline, request.alignment);
   ribbons.refresh();
   const terrain::TileSource& tiles = *(*view)->world->tiles;

@@ -232,10 +232,16 @@ Status WebmFile::finish(std::int64_t end_ms) {
   const Bytes head_now = head(end_ms, cues_position, written_);
   if (std::fseek(stream_.get(), 0, SEEK_SET) != 0) return failure();
   if (Status status = write(head_now); !status) return status;
-  if (std::fclose(stream_.release()) != 0) return failure();
   std::error_code failed;
+  if (std::fclose(stream_.release()) != 0) {
+    const Error error = failure();
+    fs::remove(part_of(file_), failed);
+    return error;
+  }
   fs::rename(part_of(file_), file_, failed);
   if (failed) {
+    std::error_code ignored;
+    fs::remove(part_of(file_), ignored);
     return Error{ErrorCode::kIo, file_.string() + ": cannot be written: " + failed.message()};
   }
   return {};

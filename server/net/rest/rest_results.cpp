@@ -91,17 +91,49 @@ HttpResponse manifest(RunManager* runs, const std::string& id) {
       *folder, "manifest.json", "application/json", "run " + id + " has no manifest yet");
 }
 
+/// Rows 0 to count - 1, read in parts: a run that flies waits for each.
+/// Errors: kUnsupported for more than are served at once.
+template <typename Row, typename ReadRows>
+Result<std::vector<Row>> all_rows(std::size_t count, const ReadRows& read_rows) {
+  constexpr std::size_t kMostRows = 1'000'000;
+  constexpr std::size_t kPart = 2000;
+  if (count > kMostRows) {
+    return Error{ErrorCode::kUnsupported,
+                 "format = json: the trajectory has " + std::to_string(count) +
+                     " rows: must have at most " + std::to_string(kMostRows) +
+                     " (format=tum has no limit)"};
+  }
+  std::vector<Row> rows;
+  rows.reserve(count);
+  while (rows.size() < count) {
+    std::vector<Row> part = read_rows(rows.size(), std::min(kPart, count - rows.size()));
+    if (part.empty()) break;
+    std::move(part.begin(), part.end(), std::back_inserter(rows));
+  }
+  return rows;
+}
+
 Result<json> columns_of(const RunTimeline& timeline,
                         const std::string& name,
                         const std::string& alignment) {
-  if (name == kTruth) return truth_columns(timeline.frames(0, timeline.frame_count()));
+  if (name == kTruth) {
+    const auto rows = all_rows<server::FrameRow>(
+        timeline.frame_count(),
+        [&](std::size_t first, std::size_t limit) { return timeline.frames(first, limit); });
+    if (!rows) return rows.error();
+    return truth_columns(*rows);
+  }
   const auto& names = timeline.estimators();
   const auto index =
       static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   const auto placed = server::RowAlignment::of(timeline, index, alignment);
   if (!placed) return placed.error();
-  return estimate_columns(
-      timeline, index, timeline.estimates(index, 0, timeline.estimate_count(index)), *placed);
+  const auto rows = all_rows<server::EstimateRow>(timeline.estimate_count(index),
+                                                  [&](std::size_t first, std::size_t limit) {
+                                                    return timeline.estimates(index, first, limit);
+                                                  });
+  if (!rows) return rows.error();
+  return estimate_columns(timeline, index, *rows, *placed);
 }
 
 /// Checks the parameters `format` and `alignment` for the trajectory `name`.

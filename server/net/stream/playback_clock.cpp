@@ -47,7 +47,7 @@ void PlaybackClock::advance(std::int64_t now_ns) {
   if (speed_ > 0.0 && reaches_newest(within) && before_ns <= extent_.newest_ns &&
       t_ns_ >= extent_.newest_ns) {
     t_ns_ = extent_.newest_ns;
-    live_ = true;
+    if (speed_ >= 1.0) go_live();
     return;
   }
   if (t_ns_ < within.end_ns && speed_ > 0.0) return;

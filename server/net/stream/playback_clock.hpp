@@ -35,9 +35,9 @@ class PlaybackClock {
 
   /// When the last run ends, a live viewer is paused at the newest instant.
   void set_extent(const Extent& extent);
-  /// Advances by the elapsed time times the speed. A clock that plays forwards and reaches the
-  /// newest instant of a run that flies becomes live. At the end of the range, if it began inside
-  /// it, else of the extent, it stops or loops.
+  /// Advances by the elapsed time times the speed. A clock that plays forwards at speed 1 or more
+  /// and reaches the newest instant of a run that flies becomes live, at speed 1. At the end of the
+  /// range, if it began inside it, else of the extent, it stops or loops.
   /// @param now_ns  monotonic wall clock
   void advance(std::int64_t now_ns);
 
@@ -46,7 +46,8 @@ class PlaybackClock {
   void pause();
   /// Clamped to the extent; leaves live mode. Does not change whether it plays.
   void seek(std::int64_t t_ns);
-  /// Negative = backwards. Any speed other than 1 leaves live mode.
+  /// Negative = backwards. Any speed other than 1 leaves live mode; a higher one becomes live again
+  /// at once.
   /// @pre |speed| in [kMinSpeed, kMaxSpeed]
   void set_speed(double speed);
   void set_loop(bool loop) { loop_ = loop; }

@@ -66,7 +66,11 @@ Result<Override> parse_override(const std::string& text) {
   if (Status status = check_json_depth(value, change.path); !status) {
     return Error{ErrorCode::kInvalidArgument, status.error().message};
   }
-  Result<Json> json = json_from_outside<Json>(value, "");
+  Result<Json> json = json_from_outside<Json>(value, change.path);
+  // An object or list with a mistake is not meant as text.
+  if (!json && (value.starts_with('{') || value.starts_with('['))) {
+    return Error{ErrorCode::kInvalidArgument, json.error().message};
+  }
   change.value = json ? std::move(*json) : Json(value);
   return change;
 }

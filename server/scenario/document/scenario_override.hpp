@@ -10,7 +10,8 @@
 
 namespace overfly::server {
 
-/// "path=VALUE": VALUE is parsed as JSON, else taken as a string. Errors: kInvalidArgument.
+/// "path=VALUE": VALUE is parsed as JSON, else taken as a string. Errors: kInvalidArgument; also
+/// for a VALUE that starts as a JSON object or array and is not one.
 [[nodiscard]] Result<Override> parse_override(const std::string& text);
 [[nodiscard]] Result<std::vector<Override>> parse_overrides(const std::vector<std::string>& texts);
 

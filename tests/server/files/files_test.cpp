@@ -96,6 +96,42 @@ TEST(WholeFile, ReplacesAndLeavesNoPart) {
   EXPECT_THAT(nowhere.error().message, HasSubstr("No such file"));
 }
 
+/// A folder that came from elsewhere may have anything in place of the temporary file.
+TEST(WholeFile, WritesThroughNoLinkAndWaitsForNoReader) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.txt";
+  const auto part = folder.path() / "a.txt.part";
+  const auto elsewhere = folder.path() / "elsewhere";
+  overfly::testing::write_text(elsewhere, "kept");
+  std::filesystem::create_symlink(elsewhere, part);
+  ASSERT_TRUE(write_whole(file, std::string("one")).ok());
+  EXPECT_EQ(overfly::testing::read_text(elsewhere), "kept");
+  EXPECT_FALSE(std::filesystem::is_symlink(file));
+  ASSERT_EQ(::mkfifo(part.c_str(), 0600), 0);
+  ASSERT_TRUE(write_whole(file, std::string("two")).ok());
+  EXPECT_EQ(overfly::testing::read_text(file), "two");
+  std::filesystem::create_directory(part);
+  EXPECT_EQ(write_whole(file, std::string("three")).error().code, ErrorCode::kIo);
+}
+
+TEST(LineFile, IsReadInPieces) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.jsonl";
+  constexpr std::size_t kRows = 3000;
+  std::string text;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    text += "{\"i\":" + std::to_string(i) + ",\"text\":\"" + std::string(1000, 'x') + "\"}\n";
+  }
+  overfly::testing::write_text(file, text);
+  const auto lines = read_lines(file);
+  ASSERT_TRUE(lines.ok()) << lines.error().message;
+  ASSERT_EQ(lines->size(), kRows);
+  for (std::size_t i = 0; i < kRows; ++i) ASSERT_EQ((*lines)[i].at("i"), i);
+  overfly::testing::write_text(file, "{}\n\"" + std::string(2U << 20U, 'x') + "\"\n");
+  EXPECT_EQ(read_lines(file).error().code, ErrorCode::kUnreadable);
+  EXPECT_THAT(read_lines(file).error().message, HasSubstr("row 2: is longer than 1048576 bytes"));
+}
+
 TEST(LineFile, IsReadBackWithoutTheLineThatAKillCutShort) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.jsonl";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/net/http_answers.hpp"
 #include "tests/support/support.hpp"
 
 namespace overfly::net {
@@ -53,6 +54,19 @@ TEST_F(StaticFilesTest, LetsHashedFilesBeKeptAndOthersBeAskedFor) {
   EXPECT_EQ(header(get("/index.html"), "Cache-Control"), "no-cache");
   EXPECT_EQ(get("/index.html", etag).status, 304);
   EXPECT_EQ(get("/index.html", "\"other\"").status, 200);
+}
+
+/// RFC 9110, 8.6.
+TEST_F(StaticFilesTest, AnswersWithoutBodyHaveNoLength) {
+  namespace http = boost::beast::http;
+  const std::string etag = header(get("/index.html"), "ETag");
+  EXPECT_EQ(
+      http_answer(get("/index.html", etag), 11, true, false).count(http::field::content_length),
+      0U);
+  HttpResponse deleted;
+  deleted.status = 204;
+  EXPECT_EQ(http_answer(deleted, 11, true, false).count(http::field::content_length), 0U);
+  EXPECT_EQ(http_answer(get("/index.html"), 11, true, true)[http::field::content_length], "6");
 }
 
 TEST_F(StaticFilesTest, GivesTheDashboardForItsOwnAddressesOnly) {

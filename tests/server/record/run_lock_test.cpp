@@ -25,6 +25,17 @@ TEST(RunLock, OneAtATime) {
   EXPECT_TRUE(RunLock::take(folder.path()).ok());
 }
 
+/// A folder that came from elsewhere may have a link in place of the file.
+TEST(RunLock, FollowsNoLink) {
+  const overfly::testing::TemporaryFolder folder;
+  const auto elsewhere = folder.path() / "elsewhere";
+  std::filesystem::create_directory(folder.path() / "run");
+  std::filesystem::create_symlink(elsewhere, RunLock::file_of(folder.path() / "run"));
+  EXPECT_FALSE(RunLock::held(folder.path() / "run"));
+  EXPECT_EQ(RunLock::take(folder.path() / "run").error().code, ErrorCode::kIo);
+  EXPECT_FALSE(std::filesystem::exists(elsewhere));
+}
+
 /// Those who only ask must not keep others from working.
 TEST(RunLock, IsTakenWhileOthersAskForIt) {
   const overfly::testing::TemporaryFolder folder;

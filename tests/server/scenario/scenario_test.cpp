@@ -191,6 +191,9 @@ TEST(ScenarioOverride, IsJsonElseText) {
   EXPECT_EQ(parse_override("a=x=y")->value, "x=y");
   EXPECT_EQ(parse_override("a=[1]")->value, Json::array({1}));
   EXPECT_FALSE(parse_override("a").ok());
+  // A mistake in an object or array is reported, not taken as text.
+  EXPECT_NE(parse_override("a.b={\"c\":1,\"c\":2}").error().message.find("a.b"), std::string::npos);
+  EXPECT_EQ(parse_override("a=[1,").error().code, ErrorCode::kInvalidArgument);
   EXPECT_FALSE(parse_override("=1").ok());
   const auto deep = parse_override("a=" + std::string(100'000, '['));
   ASSERT_FALSE(deep.ok());

@@ -131,6 +131,21 @@ TEST(PlaybackClock, BecomesLiveWhenItCatchesUp) {
   clock.advance(kSecond);
   EXPECT_TRUE(clock.live());
   EXPECT_EQ(clock.t_ns(), 5 * kSecond);
+  EXPECT_EQ(clock.speed(), 1.0);
+}
+
+TEST(PlaybackClock, StaysBehindAtALowerSpeed) {
+  PlaybackClock clock(flying_until(5 * kSecond));
+  clock.advance(0);
+  clock.set_speed(0.5);
+  clock.advance(kSecond / 10);
+  EXPECT_FALSE(clock.live());
+  EXPECT_TRUE(clock.playing());
+  EXPECT_EQ(clock.t_ns(), 5 * kSecond);
+  clock.set_extent(flying_until(8 * kSecond));
+  clock.advance(kSecond / 10 + 2 * kSecond);
+  EXPECT_EQ(clock.t_ns(), 6 * kSecond);
+  EXPECT_FALSE(clock.live());
 }
 
 TEST(PlaybackClock, IgnoresAClockThatGoesBack) {
