@@ -156,7 +156,7 @@ export class Launcher implements View {
       scenarios?.length === 0 ? 'The server has no scenarios.' : 'Reading the scenarios';
     const description =
       repeatedRun === null
-        ? entry?.description
+        ? entry?.description || (entry && 'No description.')
         : `All settings of the run of ${formatDate(repeatedRun.created_utc)}. Change what is to differ.`;
     setText(this.description, description ?? empty);
     this.description.title = description ?? '';
