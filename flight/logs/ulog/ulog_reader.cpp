@@ -24,6 +24,14 @@ constexpr std::size_t kUlogHeaderBytes = 16;
 constexpr std::size_t kLongestBytes = kUlogMessageHeaderBytes + 65535 + kUlogMessageHeaderBytes;
 constexpr std::size_t kMaxTopics = 4096;
 
+/// A state of vehicle_status, in [0, 255]. Files may declare its field with any type.
+/// @return empty without the field, and for values that no state has
+std::optional<double> state_in(const std::optional<UlogField>& field,
+                               std::span<const std::uint8_t> data) {
+  const std::optional<double> state = field ? number_in(*field, data) : std::nullopt;
+  return state && *state >= 0.0 && *state <= 255.0 ? state : std::nullopt;
+}
+
 class UlogPass {
  public:
   explicit UlogPass(LogSink& sink) : sink_(sink) {}
@@ -33,10 +41,14 @@ class UlogPass {
   void skip(std::size_t bytes);
   /// What follows a cut message is in step again.
   void cut_message() {
+    first_message_ = false;
     ++cut_messages_;
     in_step_ = true;
   }
-  void unknown_kind() { ++unknown_kinds_; }
+  void unknown_kind() {
+    first_message_ = false;
+    ++unknown_kinds_;
+  }
   void report();
   [[nodiscard]] bool in_step() const { return in_step_; }
   /// Offsets at which appended data begin, increasing.
@@ -70,6 +82,8 @@ class UlogPass {
   BootClock clock_;
   HeldMessages<std::vector<std::uint8_t>> held_;  ///< bodies
   std::vector<std::uint64_t> appended_;
+  bool first_message_ = true;  ///< nothing follows the header yet: only there flags are allowed
+  std::uint64_t late_flags_ = 0;
   std::uint64_t skipped_bytes_ = 0;
   std::uint64_t damaged_places_ = 0;
   bool in_step_ = true;
@@ -173,17 +187,15 @@ void UlogPass::pass_data(Topic& topic,
 }
 
 void UlogPass::take_status(Topic& topic, const LogTime& time, std::span<const std::uint8_t> data) {
-  if (topic.plan.mode) {
-    const std::optional<double> mode = number_in(*topic.plan.mode, data);
-    if (std::exchange(topic.mode, mode) != mode && mode) {
+  if (const std::optional<double> mode = state_in(topic.plan.mode, data)) {
+    if (std::exchange(topic.mode, mode) != mode) {
       sink_.event({"", time, EventKind::kMode, "mode " + std::to_string(static_cast<int>(*mode))});
     }
   }
-  if (topic.plan.arming) {
+  if (const std::optional<double> arming = state_in(topic.plan.arming, data)) {
     constexpr double kArmed = 2.0;
-    const std::optional<double> arming = number_in(*topic.plan.arming, data);
     const std::optional<double> before = std::exchange(topic.arming, arming);
-    if (arming && (!before || (*before == kArmed) != (*arming == kArmed))) {
+    if (!before || (*before == kArmed) != (*arming == kArmed)) {
       sink_.event({"", time, EventKind::kArming, *arming == kArmed ? "armed" : "disarmed"});
     }
   }
@@ -200,9 +212,12 @@ void UlogPass::take_text(std::span<const std::uint8_t> body, std::size_t time_at
 
 Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
   in_step_ = true;
+  const bool is_first = std::exchange(first_message_, false);
   switch (kind) {
     case 'B':
-      return take_flags(body);
+      if (is_first) return take_flags(body);
+      ++late_flags_;
+      break;
     case 'F':
       sink_.declaration();
       if (!formats_.declare({reinterpret_cast<const char*>(body.data()), body.size()})) {
@@ -237,6 +252,7 @@ Status UlogPass::take(char kind, std::span<const std::uint8_t> body) {
 }
 
 void UlogPass::skip(std::size_t bytes) {
+  first_message_ = false;
   skipped_bytes_ += bytes;
   if (std::exchange(in_step_, false)) ++damaged_places_;
 }
@@ -251,6 +267,7 @@ void UlogPass::report() {
        "bytes in " + counted(damaged_places_, "place") + " belong to no message and were skipped");
   warn(cut_messages_, "messages are cut off by the end of the file or by appended data");
   warn(unknown_kinds_, "messages are of kinds that are not known");
+  warn(late_flags_, "messages with flags are not the first one of the file and were not used");
   warn(bad_formats_, "formats are missing or cannot be understood");
   warn(unsubscribed_, "messages belong to no subscription");
   warn(left_out_topics_,

@@ -271,6 +271,50 @@ TEST(Ulog, RefusesAFileThatNeedsANewerReader) {
   EXPECT_THAT(log.error().message, HasSubstr("incompat_flags[0] = 2"));
 }
 
+/// Damage can look like any kind of message.
+TEST(Ulog, IgnoresFlagsThatAreNotInTheFirstMessage) {
+  for (const bool after_damage : {false, true}) {
+    Bytes bytes = definitions();
+    append(bytes, flight(20));
+    if (after_damage) append(bytes, Bytes(50, 0xEE));
+    append(bytes, flag_bits(0xFF, 0));
+    append(bytes, flag_bits(1, bytes.size() + 500));  // in the middle of a message
+    append(bytes, attitude_message(3'000'000, 0.0));
+    for (int i = 1; i < 20; ++i) {
+      append(bytes, attitude_message(static_cast<std::uint64_t>(3'000'000 + 10'000 * i), 0.0));
+    }
+    const overfly::testing::TemporaryFolder folder;
+    const auto log = open_ulog(folder, bytes);
+    ASSERT_TRUE(log.ok()) << log.error().message;
+    EXPECT_EQ(log->streams[0].messages, 40U);
+    EXPECT_THAT(log->warnings,
+                Contains(HasSubstr("2 messages with flags are not the first one of the file")));
+    EXPECT_THAT(log->warnings, ::testing::Not(Contains(HasSubstr("are cut off"))));
+  }
+}
+
+TEST(Ulog, IgnoresStatesThatNoVehicleHas) {
+  Bytes bytes = ulog_header();
+  append(bytes,
+         ulog_text('F', "vehicle_status:uint64_t timestamp;double nav_state;double arming_state;"));
+  append(bytes, ulog_subscription(0, 1, "vehicle_status"));
+  std::uint64_t time_us = 2'000'000;
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double state : {3.0, 1e300, kNan, kNan, -1.0, 256.0, 3.0, 2.0}) {
+    Bytes data;
+    put(data, time_us += 10'000);
+    put(data, state);
+    put(data, state);
+    append(bytes, ulog_data(1, data));
+  }
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_ulog(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  std::vector<std::string> texts;
+  for (const LogEvent& event : log->events) texts.push_back(event.text);
+  EXPECT_THAT(texts, ::testing::ElementsAre("mode 3", "disarmed", "mode 2", "armed"));
+}
+
 TEST(Ulog, LeavesOutValuesThatAreNotNumbers) {
   Bytes bytes = definitions();
   append(bytes, attitude_message(2'000'000, std::numeric_limits<double>::quiet_NaN()));
