@@ -7,6 +7,7 @@
 
 #include "core/time.hpp"
 #include "flight/logs/ned_attitude.hpp"
+#include "flight/logs/ros/frame_words.hpp"
 #include "flight/logs/ros/ros_sensors.hpp"
 
 namespace overfly::flight::logs {
@@ -52,7 +53,7 @@ Eigen::Quaterniond take_quaternion(RosCursor& message) {
 }
 
 Eigen::Vector3d ned_position(std::string_view world, const Eigen::Vector3d& p) {
-  if (world.ends_with("ned")) return p;
+  if (ends_with_word(world, "ned")) return p;
   return {p.y(), p.x(), -p.z()};
 }
 
@@ -62,8 +63,8 @@ Eigen::Quaterniond ned_attitude(std::string_view world,
   // Both changes of axes are half turns, which are their own inverses.
   const Eigen::Quaterniond R_flu_frd(0.0, 1.0, 0.0, 0.0);
   Eigen::Quaterniond R = R_world_body;
-  if (!body.ends_with("frd")) R = R * R_flu_frd;
-  if (!world.ends_with("ned")) R = R_enu_ned() * R;
+  if (!ends_with_word(body, "frd")) R = R * R_flu_frd;
+  if (!ends_with_word(world, "ned")) R = R_enu_ned() * R;
   return R;
 }
 

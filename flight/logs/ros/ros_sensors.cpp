@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/sensors/measured_samples.hpp"
+#include "flight/logs/ros/frame_words.hpp"
 
 namespace overfly::flight::logs {
 namespace {
@@ -16,7 +17,7 @@ using Covariance = std::array<double, 9>;  ///< 3 x 3, row by row
 Eigen::Vector3d take_body_vector(RosCursor& message, std::string_view frame_id) {
   Eigen::Vector3d value;
   for (double& component : value) component = message.number<double>();
-  if (!frame_id.ends_with("frd")) value = {value.x(), -value.y(), -value.z()};
+  if (!ends_with_word(frame_id, "frd")) value = {value.x(), -value.y(), -value.z()};
   return value;
 }
 

@@ -118,6 +118,36 @@ TEST_F(Mcap, UnderstandsTheNamesOfNedAndFrdFrames) {
   EXPECT_LT(rotation_angle_rad(pose.R_ned_body, R_ned_frd), 1e-6);
 }
 
+/// "ned" and "frd" at the end of another word say nothing about axes.
+TEST_F(Mcap, ReadsFramesOfOtherNamesByTheirStandard) {
+  const auto pose_in = [&](std::string_view world, std::string_view body) {
+    const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+    Bytes records = mcap_schema(1, "nav_msgs/msg/Odometry");
+    append(records, mcap_channel(1, 1, "/odom", "cdr"));
+    append(records,
+           mcap_message(
+               1,
+               0,
+               testing::odometry(
+                   Wire::kCdrLittle, kStartNs, {3.0, 5.0, 7.0}, level, world, body)));
+    const auto log = open_bytes(whole_file(records));
+    EXPECT_TRUE(log.ok());
+    return first_pose_of(*log, "/odom");
+  };
+  const LogPose standard = pose_in("map", "base_link");
+  EXPECT_EQ(standard.position, Eigen::Vector3d(5.0, 3.0, -7.0));
+  for (const char* const world : {"gravity_aligned", "map_aligned", "Aligned", "v2ned"}) {
+    const LogPose pose = pose_in(world, "wharfrd");
+    EXPECT_EQ(pose.position, standard.position) << world;
+    EXPECT_LT(rotation_angle_rad(pose.R_ned_body, standard.R_ned_body), 1e-6) << world;
+  }
+  for (const char* const world : {"ned", "map_ned", "a/ned", "map-ned"}) {
+    const LogPose pose = pose_in(world, "a/frd");
+    EXPECT_EQ(pose.position, Eigen::Vector3d(3.0, 5.0, 7.0)) << world;
+    EXPECT_LT(rotation_angle_rad(pose.R_ned_body, Eigen::Quaterniond::Identity()), 1e-6) << world;
+  }
+}
+
 TEST_F(Mcap, ReadsCompressedChunks) {
   const Bytes raw = flight_records(Wire::kCdrLittle);
   for (const auto& [name, stored] :

@@ -186,6 +186,12 @@ TEST_F(LoggedRos, RosImuIsLeftOutWithoutAccelerationsAndOfTruth) {
     return imu_bytes(wire, stamp_ns, kRate, kForce, 0.0, "base_link_frd");
   };
   expect_inertial(flown(recording_of(topics, Wire::kRos1, true)).samples.imu);
+
+  // "frd" as the end of another word.
+  topics[1].message = [](Wire wire, std::int64_t stamp_ns, int) {
+    return imu_bytes(wire, stamp_ns, flu(kRate), flu(kForce), 0.0, "imu_of_wharfrd");
+  };
+  expect_inertial(flown(recording_of(topics, Wire::kRos1, true)).samples.imu);
 }
 
 TEST_F(LoggedRos, RosFixWithTheClockOfAnotherRecorderIsDeliveredWhenMeasured) {
