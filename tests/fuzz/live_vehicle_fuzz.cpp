@@ -20,7 +20,8 @@ using namespace overfly;
 using namespace overfly::flight;
 using namespace overfly::flight::mavlink;
 
-/// Answers whatever is asked with the same messages, then with silence.
+/// Answers whatever is asked with the same messages, then with silence. Nothing has come before it is
+/// waited for.
 class HostileVehicle final : public Exchange {
  public:
   explicit HostileVehicle(std::deque<HeldMessage> messages) : messages_(std::move(messages)) {}
@@ -31,7 +32,7 @@ class HostileVehicle final : public Exchange {
     return {};
   }
   [[nodiscard]] Result<std::optional<HeldMessage>> next(TimePoint deadline) override {
-    if (messages_.empty()) {
+    if (messages_.empty() || deadline <= now_) {
       now_ = std::max(now_, deadline);
       return std::optional<HeldMessage>();
     }

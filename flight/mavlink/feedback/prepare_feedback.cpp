@@ -16,8 +16,9 @@ constexpr const char* kHeightSource = "EK3_SRC1_POSZ";
 constexpr double kSourceGps = 3.0;
 constexpr double kSourceExternal = 6.0;
 
-bool is_origin(const HeldMessage& message) {
-  return message.is(MessageId::kGpsGlobalOrigin) && message.reader().at<std::int32_t>(0) != 0;
+bool is_origin(const Exchange& exchange, const HeldMessage& message) {
+  return message.is(MessageId::kGpsGlobalOrigin) && is_from_target(exchange, message) &&
+         message.reader().at<std::int32_t>(0) != 0;
 }
 
 /// An autopilot that has just started waits for its position first.
@@ -38,7 +39,7 @@ Result<bool> has_origin(Exchange& exchange, int attempts) {
     if (Status sent = exchange.send(MessageId::kCommandLong, payload); !sent) return sent.error();
     const auto answer = wait_for(exchange,
                                  exchange.now() + std::chrono::seconds(1),
-                                 [](const HeldMessage& each) { return is_origin(each); });
+                                 [&](const HeldMessage& each) { return is_origin(exchange, each); });
     if (!answer) return answer.error();
     found = answer->has_value();
   }
@@ -55,7 +56,10 @@ Status set_origin(Exchange& exchange, const GlobalPosition& origin) {
             .put(8, static_cast<std::int32_t>(std::llround(1e3 * origin.alt_msl_m)))
             .put(12, exchange.target().system));
   };
-  const auto answer = ask(exchange, "setting the origin", {}, request, is_origin);
+  const auto answer = ask(
+      exchange, "setting the origin", {}, request, [&](const HeldMessage& each) {
+        return is_origin(exchange, each);
+      });
   return answer ? Status() : answer.error();
 }
 

@@ -45,22 +45,39 @@ void keep_text(const HeldMessage& message, std::vector<std::string>& texts) {
   }
 }
 
+/// COMMAND_ACK names the number of a command, not the request: one that comes late would answer the
+/// next request with that number. The answers to all requests of this call are therefore waited for,
+/// as long as all attempts may take.
 Result<Answer> answer_to(Exchange& exchange, const Command& command, const Patience& patience) {
   Answer answer;
+  int requests = 0;
+  int answered = 0;
   const auto acknowledges = [&](const HeldMessage& message) {
     keep_text(message, answer.texts);
-    return message.is(MessageId::kCommandAck) &&
-           message.reader().at<std::uint16_t>(0) == command.id;
+    if (!message.is(MessageId::kCommandAck) || !is_from_target(exchange, message) ||
+        message.reader().at<std::uint16_t>(0) != command.id) {
+      return false;
+    }
+    if (message.reader().at<std::uint8_t>(2) != kInProgress) ++answered;
+    return true;
   };
+  if (Status dropped = drop_held(exchange); !dropped) return dropped.error().in(command.what);
   Result<HeldMessage> first = ask(
       exchange,
       command.what,
       patience,
       [&](int attempt) {
+        ++requests;
         return exchange.send(MessageId::kCommandLong, payload_of(exchange, command, attempt));
       },
       acknowledges);
-  if (!first) return first.error();
+  if (!first) {
+    if (first.error().code != ErrorCode::kIo) return first.error();
+    auto late = wait_for(exchange, exchange.now() + requests * patience.answer, acknowledges);
+    if (!late) return late.error().in(command.what);
+    if (!*late) return first.error();
+    first = std::move(**late);
+  }
   answer.result = first->reader().at<std::uint8_t>(2);
   const Exchange::TimePoint end = exchange.now() + kProgressLimit;
   while (answer.result == kInProgress) {
@@ -79,6 +96,12 @@ Result<Answer> answer_to(Exchange& exchange, const Command& command, const Patie
           return false;
         });
     if (!rest) return rest.error().in(command.what);
+  }
+  const Exchange::TimePoint last = exchange.now() + requests * patience.answer;
+  while (answered < requests) {
+    const auto other = wait_for(exchange, last, acknowledges);
+    if (!other) return other.error().in(command.what);
+    if (!*other) break;
   }
   return answer;
 }

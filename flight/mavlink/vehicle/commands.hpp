@@ -20,8 +20,10 @@ struct Command {
 /// MAV_RESULT as text: "unsupported".
 [[nodiscard]] std::string result_text(std::uint8_t result);
 
-/// Sends a command until the vehicle acknowledges it. While the vehicle reports progress, the
-/// command is waited for up to a minute.
+/// Sends a command until the component that it is for acknowledges it. While the vehicle reports
+/// progress, the command is waited for up to a minute. After more than one attempt, the answers to
+/// the others are waited for as long as all attempts may take: a late one would answer the next
+/// command with the same number. For the same reason messages that came before are dropped.
 /// @return the MAV_RESULT; 0: accepted
 /// Errors: as ask().
 [[nodiscard]] Result<std::uint8_t> command_result(Exchange& exchange,

@@ -46,11 +46,27 @@ class Exchange {
   [[nodiscard]] virtual Target target() const = 0;
   /// Errors: kConflict on a read-only link.
   [[nodiscard]] virtual Status send(MessageId id, const PayloadWriter& payload) = 0;
-  /// The next message of the vehicle; empty at the deadline. Errors: kCancelled; kInternal if the
-  /// session has failed.
+  /// The next message of the vehicle's components to this program or to all; empty at the deadline.
+  /// Errors: kCancelled; kInternal if the session has failed.
   [[nodiscard]] virtual Result<std::optional<HeldMessage>> next(TimePoint deadline) = 0;
   [[nodiscard]] virtual TimePoint now() const = 0;
 };
+
+/// The most messages that a conversation holds.
+inline constexpr std::size_t kMaxHeldMessages = 4096;
+
+/// Whether a message is meant for a ground station: the answers of the command and mission protocols
+/// name whom they answer. 0 stands for all, as do messages without such fields (MAVLink 1 leaves
+/// those of COMMAND_ACK out).
+/// @param system, component  of the ground station
+[[nodiscard]] bool is_addressed_to(const Frame& frame, std::uint8_t system, std::uint8_t component);
+
+/// Whether the component that requests go to has sent a message. Requests to component 0 go to all.
+[[nodiscard]] bool is_from_target(const Exchange& exchange, const HeldMessage& message);
+
+/// Drops what has arrived so far, at most kMaxHeldMessages: it answers no later request.
+/// Errors: as Exchange::next.
+[[nodiscard]] Status drop_held(Exchange& exchange);
 
 /// How long answers are waited for, and how often a request is repeated without one.
 struct Patience {
@@ -63,7 +79,8 @@ struct Patience {
                               const std::string& what,
                               const Patience& patience);
 
-/// The next message that `match` accepts; empty at the deadline. Errors: as Exchange::next.
+/// The next message that `match` accepts; empty at the deadline, also while others keep coming.
+/// Errors: as Exchange::next.
 template <typename Match>
 [[nodiscard]] Result<std::optional<HeldMessage>> wait_for(Exchange& exchange,
                                                           Exchange::TimePoint deadline,
@@ -71,6 +88,7 @@ template <typename Match>
   while (true) {
     Result<std::optional<HeldMessage>> message = exchange.next(deadline);
     if (!message || !*message || match(**message)) return message;
+    if (exchange.now() >= deadline) return std::optional<HeldMessage>();
   }
 }
 

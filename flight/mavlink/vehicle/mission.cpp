@@ -157,7 +157,9 @@ Status upload_mission(Exchange& exchange, const std::vector<MissionItem>& items)
               encode_mission_item(
                   items[*asked], *asked, exchange.target().system, exchange.target().component));
         },
-        [](const HeldMessage& each) { return is_request(each) || is_mission_ack(each); });
+        [&](const HeldMessage& each) {
+          return is_from_target(exchange, each) && (is_request(each) || is_mission_ack(each));
+        });
     if (!message) return message.error();
     if (is_mission_ack(*message)) {
       if (message->reader().at<std::uint8_t>(2) == kMissionAccepted) {
@@ -192,8 +194,10 @@ Result<std::vector<MissionItem>> download_mission(Exchange& exchange) {
       [&](int /*attempt*/) {
         return exchange.send(MessageId::kMissionRequestList, to_vehicle(PayloadWriter(3), 0));
       },
-      [](const HeldMessage& each) {
-        return is_mission_ack(each) || (each.is(MessageId::kMissionCount) && type_at(each, 4) == 0);
+      [&](const HeldMessage& each) {
+        return is_from_target(exchange, each) &&
+               (is_mission_ack(each) ||
+                (each.is(MessageId::kMissionCount) && type_at(each, 4) == 0));
       });
   if (!count) return count.error();
   if (is_mission_ack(*count)) return rejection(exchange, what, *count);
@@ -215,7 +219,9 @@ Result<std::vector<MissionItem>> download_mission(Exchange& exchange) {
               MessageId::kMissionRequestInt,
               to_vehicle(PayloadWriter(5).put(0, static_cast<std::uint16_t>(i)), 2));
         },
-        [&](const HeldMessage& each) { return is_item(each, i); });
+        [&](const HeldMessage& each) {
+          return is_from_target(exchange, each) && is_item(each, i);
+        });
     if (!item) return item.error();
     mission.push_back(decode_mission_item(item->reader(), !item->is(MessageId::kMissionItem)));
   }

@@ -93,8 +93,12 @@ Status request_parameter(Exchange& exchange, const std::string& name, std::int16
                            .put_text(4, name, kMaxParameterName));
 }
 
-bool is_value_of(const HeldMessage& message, const std::string& name) {
-  return message.is(MessageId::kParamValue) && message.reader().text(8, kMaxParameterName) == name;
+bool is_value(const Exchange& exchange, const HeldMessage& message) {
+  return message.is(MessageId::kParamValue) && is_from_target(exchange, message);
+}
+
+bool is_value_of(const Exchange& exchange, const HeldMessage& message, const std::string& name) {
+  return is_value(exchange, message) && message.reader().text(8, kMaxParameterName) == name;
 }
 
 /// What has answered PARAM_REQUEST_LIST so far.
@@ -103,8 +107,8 @@ struct Collected {
   std::map<std::uint16_t, Parameter> by_index;
 
   [[nodiscard]] bool complete() const { return count > 0 && by_index.size() >= count; }
+  /// @pre is_value(exchange, message)
   void take(const Exchange& exchange, const HeldMessage& message) {
-    if (!message.is(MessageId::kParamValue)) return;
     const auto index = message.reader().at<std::uint16_t>(6);
     const auto stated = message.reader().at<std::uint16_t>(4);
     // ArduPilot sends 65535 as the index of an answer to a name.
@@ -118,8 +122,8 @@ struct Collected {
 Status collect(Exchange& exchange, Collected& collected) {
   while (!collected.complete()) {
     const auto message =
-        wait_for(exchange, exchange.now() + std::chrono::seconds(1), [](const HeldMessage& each) {
-          return each.is(MessageId::kParamValue);
+        wait_for(exchange, exchange.now() + std::chrono::seconds(1), [&](const HeldMessage& each) {
+          return is_value(exchange, each);
         });
     if (!message) return message.error();
     if (!*message) return {};
@@ -167,7 +171,7 @@ Result<Parameter> read_parameter(Exchange& exchange, const std::string& name) {
       what,
       {},
       [&](int /*attempt*/) { return request_parameter(exchange, name, kByName); },
-      [&](const HeldMessage& each) { return is_value_of(each, name); });
+      [&](const HeldMessage& each) { return is_value_of(exchange, each, name); });
   if (message) return decode_parameter(exchange, *message);
   if (message.error().code != ErrorCode::kIo) return message.error();
   return Error{ErrorCode::kNotFound,
@@ -201,7 +205,7 @@ Status set_parameter(Exchange& exchange, const std::string& name, double value) 
       "setting parameter " + name,
       {},
       [&](int /*attempt*/) { return exchange.send(MessageId::kParamSet, payload); },
-      [&](const HeldMessage& each) { return is_value_of(each, name); });
+      [&](const HeldMessage& each) { return is_value_of(exchange, each, name); });
   if (!answer) return answer.error();
   const double kept = decode_parameter(exchange, *answer).value;
   const double sent = value_from_wire(wire, before->type, is_bytewise(exchange, before->type));

@@ -19,7 +19,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kMaxHeldMessages = 4096;
 constexpr std::size_t kMaxWaitingSends = 256;
 constexpr milliseconds kHeartbeatPeriod{1000};
 constexpr milliseconds kTimesyncPeriod{1000};
@@ -173,7 +172,9 @@ void Vehicle::Impl::take(const Frame& frame) {
       take_message(frame, state);
       if (static_cast<MessageId>(frame.message_id) == MessageId::kTimesync) take_timesync(frame);
     }
-    for (Conversation* const conversation : conversations) conversation->hold(frame);
+    if (is_addressed_to(frame, options.link.system, options.link.component)) {
+      for (Conversation* const conversation : conversations) conversation->hold(frame);
+    }
   }
   if (listener && frame.component == state.component) listener(frame);
 }

@@ -34,8 +34,9 @@ struct VehicleClock {
 /// asks for the time (in the vehicle's own clock, so that time stamps in that clock need no
 /// conversion there).
 ///
-/// Messages of other systems on the link are counted and otherwise ignored; the vehicle's component
-/// is the autopilot that sends the first heartbeat. All functions may be called from any thread.
+/// Messages of other systems on the link are counted and otherwise ignored, as are the vehicle's
+/// answers to other ground stations in conversations; the vehicle's component is the autopilot that
+/// sends the first heartbeat. All functions may be called from any thread.
 class Vehicle {
  public:
   /// Errors: as FrameLink::create; kInternal if no thread can be started. A vehicle that is silent
@@ -60,8 +61,9 @@ class Vehicle {
   /// One line for error messages: what was heard last, and when.
   [[nodiscard]] std::string last_heard() const;
 
-  /// Begins a conversation, which holds the messages of the vehicle from now on: at most 4096, the
-  /// oldest are dropped. Ends with the object, which must not outlive the vehicle.
+  /// Begins a conversation, which holds the messages of the vehicle from now on: at most
+  /// kMaxHeldMessages, the oldest are dropped. Ends with the object, which must not outlive the
+  /// vehicle.
   /// @param cancel  ends its waits; may be null
   [[nodiscard]] std::unique_ptr<Exchange> converse(const std::atomic<bool>* cancel);
   /// Sends one message to the vehicle soon.

@@ -1,4 +1,4 @@
-// A vehicle that answers at once, in a time of its own, and loses messages as asked (seeded).
+// A vehicle that answers at once or late, in a time of its own, and loses messages as asked (seeded).
 #pragma once
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "flight/mavlink/vehicle/exchange.hpp"
@@ -27,6 +28,7 @@ class FakeVehicle final : public mavlink::Exchange {
   std::uint8_t mission_result = 0;
   std::deque<std::uint8_t> command_results;  ///< of the next commands; accepted when empty
   std::string refusal_text;
+  std::set<std::uint32_t> unknown_messages;  ///< of which no rate can be set
   bool ignores_commands = false;
   bool keeps_parameters = false;  ///< whatever is sent
   bool old_mission_requests = false;
@@ -34,6 +36,9 @@ class FakeVehicle final : public mavlink::Exchange {
   std::optional<std::int32_t> origin_lat;  ///< of GPS_GLOBAL_ORIGIN [1e-7 deg]; empty: none yet
   double loss = 0.0;                       ///< share of messages that get lost in either direction
   bool is_mute = false;                    ///< loses all that it sends
+  std::chrono::milliseconds latency{0};    ///< from an answer to its arrival
+  bool has_impostor = false;  ///< component 2 gives a wrong answer before each right one
+  int flood = 0;              ///< messages that wait in front of all others, one each millisecond
 
   // What it has got:
   std::map<std::uint32_t, int> received;  ///< by message id
@@ -47,22 +52,32 @@ class FakeVehicle final : public mavlink::Exchange {
 
   [[nodiscard]] Result<std::optional<mavlink::HeldMessage>> next(TimePoint deadline) override {
     if (cancelled) return Error{ErrorCode::kCancelled, "stopped"};
-    if (inbox_.empty()) {
+    if (flood > 0) {
+      --flood;
+      time += std::chrono::milliseconds(1);
+      return std::optional(mavlink::HeldMessage{
+          static_cast<std::uint32_t>(MessageId::kAttitude), 1, Payload(28).bytes()});
+    }
+    while (inbox_.empty() || inbox_.front().time > time) {
+      const std::chrono::seconds period(1);
+      if (!inbox_.empty() && inbox_.front().time <= std::min(deadline, time + period)) {
+        time = inbox_.front().time;
+        break;
+      }
       // A heartbeat each second while there is nothing else.
-      if (time + std::chrono::seconds(1) > deadline) {
+      if (time + period > deadline) {
         time = std::max(time, deadline);
         return std::optional<mavlink::HeldMessage>();
       }
-      time += std::chrono::seconds(1);
+      time += period;
       answer(MessageId::kHeartbeat,
              Payload(9)
                  .put(0, mode)
                  .put(4, std::uint8_t{1})
                  .put(5, autopilot)
                  .put(6, static_cast<std::uint8_t>(armed ? 0x81 : 0x01)));
-      if (inbox_.empty()) return next(deadline);
     }
-    std::optional<mavlink::HeldMessage> message = std::move(inbox_.front());
+    std::optional<mavlink::HeldMessage> message = std::move(inbox_.front().message);
     inbox_.pop_front();
     return message;
   }
@@ -101,7 +116,10 @@ class FakeVehicle final : public mavlink::Exchange {
         break;
       case MessageId::kMissionRequestInt:
         if (got.at<std::uint16_t>(0) < mission.size()) {
-          answer(MessageId::kMissionItemInt, mission[got.at<std::uint16_t>(0)]);
+          std::vector<std::uint8_t> item = mission[got.at<std::uint16_t>(0)];
+          item.at(32) = 255;  // the ground station, which had sent it to the vehicle
+          item.at(33) = 190;
+          answer(MessageId::kMissionItemInt, std::move(item));
         }
         break;
       default:
@@ -112,11 +130,27 @@ class FakeVehicle final : public mavlink::Exchange {
 
   void answer(MessageId id, const Payload& payload) { answer(id, payload.bytes()); }
   void answer(MessageId id, std::vector<std::uint8_t> payload) {
-    if (!is_mute && !is_lost())
-      inbox_.push_back({static_cast<std::uint32_t>(id), 1, std::move(payload)});
+    if (is_mute || is_lost()) return;
+    const auto number = static_cast<std::uint32_t>(id);
+    if (has_impostor) inbox_.push_back({time + latency, {number, 2, wrong(id, payload)}});
+    inbox_.push_back({time + latency, {number, 1, std::move(payload)}});
   }
 
  private:
+  struct Arrival {
+    TimePoint time;
+    mavlink::HeldMessage message;
+  };
+
+  /// Another count, result, value or item.
+  static std::vector<std::uint8_t> wrong(MessageId id, std::vector<std::uint8_t> payload) {
+    const bool has_number_first = id == MessageId::kMissionCount ||
+                                  id == MessageId::kMissionRequest ||
+                                  id == MessageId::kMissionRequestInt;
+    std::uint8_t& changed = payload.at(has_number_first ? 0 : 2);
+    changed = static_cast<std::uint8_t>(changed ^ 4U);
+    return payload;
+  }
   bool is_lost() {
     state_ = state_ * 1664525U + 1013904223U;
     return (state_ >> 8U) / 16777216.0 < loss;
@@ -164,7 +198,9 @@ class FakeVehicle final : public mavlink::Exchange {
     const mavlink::PayloadReader got(payload.bytes());
     const auto id = got.at<std::uint16_t>(28);
     std::uint8_t result = 0;
-    if (!command_results.empty()) {
+    if (id == 511 && unknown_messages.contains(static_cast<std::uint32_t>(got.at<float>(0)))) {
+      result = 3;
+    } else if (!command_results.empty()) {
       result = command_results.front();
       command_results.pop_front();
     }
@@ -197,7 +233,7 @@ class FakeVehicle final : public mavlink::Exchange {
     answer(MessageId::kMissionAck, Payload(8).put(2, mission_result));
   }
 
-  std::deque<mavlink::HeldMessage> inbox_;
+  std::deque<Arrival> inbox_;
   std::vector<std::vector<std::uint8_t>> incoming_;
   std::uint32_t state_ = 1;
 };

@@ -18,6 +18,8 @@ using ::testing::ElementsAre;
 using testing::FakeVehicle;
 using ::testing::HasSubstr;
 
+using std::chrono::milliseconds;
+
 FakeVehicle vehicle_with_parameters() {
   FakeVehicle vehicle;
   vehicle.parameters["AIRSPEED_CRUISE"] = {"AIRSPEED_CRUISE", 22.0, 9};
@@ -95,6 +97,73 @@ TEST(VehicleCommands, AreRepeatedUntilTheyAreAcknowledged) {
   EXPECT_TRUE(start_mission(vehicle).ok());
 }
 
+TEST(VehicleCommands, AreWaitedForNoLongerWhileOtherMessagesKeepComing) {
+  FakeVehicle vehicle;
+  vehicle.is_mute = true;
+  vehicle.flood = 100'000;
+  const auto start = vehicle.time;
+  EXPECT_THAT(start_mission(vehicle).error().message, HasSubstr("did not answer 5 requests"));
+  EXPECT_EQ(vehicle.commands.size(), 5U);
+  EXPECT_LT(vehicle.time - start, std::chrono::seconds(20));
+}
+
+TEST(VehicleCommands, AreNotAnsweredByMessagesThatCameBefore) {
+  FakeVehicle vehicle;
+  vehicle.answer(MessageId::kCommandAck, PayloadWriter(10).put(0, std::uint16_t{300}));
+  vehicle.command_results = {2};
+  EXPECT_THAT(start_mission(vehicle).error().message, HasSubstr("'denied'"));
+}
+
+/// Two cameras, or a companion computer, answer as the same system.
+TEST(VehicleAnswers, OfOtherComponentsAreNotTaken) {
+  FakeVehicle vehicle = vehicle_with_parameters();
+  vehicle.has_impostor = true;
+  EXPECT_TRUE(start_mission(vehicle).ok());
+  EXPECT_TRUE(arm(vehicle, std::chrono::seconds(1)).ok());
+  const Status set = set_parameter(vehicle, "AIRSPEED_CRUISE", 25.0);
+  EXPECT_TRUE(set.ok()) << set.error().message;
+  const Result<std::vector<Parameter>> all = read_all_parameters(vehicle);
+  ASSERT_TRUE(all.ok()) << all.error().message;
+  EXPECT_EQ(all->size(), vehicle.parameters.size());
+  for (const Parameter& parameter : *all) {
+    EXPECT_EQ(parameter.value, vehicle.parameters[parameter.name].value) << parameter.name;
+  }
+  std::vector<MissionItem> items(5);
+  for (MissionItem& item : items) item.parameters[0] = 7.0F;
+  const Status uploaded = upload_mission(vehicle, items);
+  ASSERT_TRUE(uploaded.ok()) << uploaded.error().message;
+  const Result<std::vector<MissionItem>> downloaded = download_mission(vehicle);
+  ASSERT_TRUE(downloaded.ok()) << downloaded.error().message;
+  EXPECT_EQ(*downloaded, items);
+}
+
+TEST(VehicleAnswers, NameWhomTheyAnswer) {
+  const std::pair<MessageId, std::size_t> messages[] = {{MessageId::kMissionAck, 0},
+                                                        {MessageId::kMissionRequest, 2},
+                                                        {MessageId::kMissionRequestInt, 2},
+                                                        {MessageId::kMissionCount, 2},
+                                                        {MessageId::kCommandAck, 8},
+                                                        {MessageId::kMissionItem, 32},
+                                                        {MessageId::kMissionItemInt, 32}};
+  for (const auto& [id, at] : messages) {
+    const auto is_ours = [&](std::uint8_t system, std::uint8_t component) {
+      const auto payload = PayloadWriter(40).put(at, system).put(at + 1, component).bytes();
+      const auto number = static_cast<std::uint32_t>(id);
+      return is_addressed_to({Version::kTwo, 0, 1, 1, number, false, payload}, 255, 190);
+    };
+    EXPECT_TRUE(is_ours(255, 190)) << at;
+    EXPECT_TRUE(is_ours(255, 0)) << at;
+    EXPECT_TRUE(is_ours(0, 0)) << at;
+    EXPECT_FALSE(is_ours(254, 190)) << at;
+    EXPECT_FALSE(is_ours(254, 0)) << at;
+    EXPECT_FALSE(is_ours(255, 230)) << at;
+  }
+  // Of MAVLink 1, and cut after its last byte that is not zero.
+  const std::vector<std::uint8_t> short_answer = {400 % 256, 400 / 256, 0};
+  EXPECT_TRUE(is_addressed_to({Version::kOne, 0, 1, 1, 77, false, short_answer}, 255, 190));
+  EXPECT_TRUE(is_addressed_to({Version::kTwo, 0, 1, 1, 22, false, short_answer}, 255, 190));
+}
+
 TEST(VehicleCommands, ReportWhyTheVehicleRefuses) {
   FakeVehicle vehicle;
   vehicle.command_results = {2};
@@ -141,6 +210,26 @@ TEST(MessageRates, AskForLowerRatesThanTheVehicleDenies) {
   ASSERT_TRUE(asked.ok());
   EXPECT_EQ(*asked, RateRequest::kNone);
   EXPECT_EQ(vehicle.commands.size(), 13U);
+}
+
+/// Longer than an answer is waited for: each request is sent again, and answered as often.
+TEST(MessageRates, AreThoseOfTheirMessageHoweverLateTheAnswersAre) {
+  for (const int latency_ms : {900, 1500, 2000, 2500}) {
+    FakeVehicle vehicle;
+    vehicle.latency = milliseconds(latency_ms);
+    vehicle.unknown_messages = {105, 295};
+    const std::pair<MessageId, RateRequest> requests[] = {
+        {MessageId::kHighresImu, RateRequest::kNone},
+        {MessageId::kRawImu, RateRequest::kInterval},
+        {MessageId::kScaledPressure, RateRequest::kInterval},
+        {MessageId::kAirspeed, RateRequest::kNone},
+        {MessageId::kVfrHud, RateRequest::kInterval}};
+    for (const auto& [message, expected] : requests) {
+      const Result<RateRequest> asked = request_message_rate(vehicle, message, 10.0);
+      ASSERT_TRUE(asked.ok()) << asked.error().message;
+      EXPECT_EQ(*asked, expected) << latency_ms << " ms, message " << static_cast<int>(message);
+    }
+  }
 }
 
 TEST(MessageRates, FallBackToStreamsOfOldFirmware) {

@@ -125,6 +125,40 @@ TEST(Vehicle, TalksToTheVehicle) {
   EXPECT_GT(clock->vehicle_ns, 5'000'000'000);
 }
 
+TEST(Vehicle, IsNotAnsweredByWhatItTellsOtherGroundStations) {
+  SessionTest test;
+  ASSERT_TRUE(test.peer.send(heartbeat_frame(1, 0)));
+  ASSERT_TRUE(test.session->wait_until_heard(milliseconds(5000), nullptr).ok());
+  std::thread vehicle([&test] {
+    while (true) {
+      const Bytes datagram = test.peer.receive();
+      if (datagram.empty()) return;
+      FrameFinder finder;
+      const auto found = finder.next(datagram, true);
+      if (!found.frame || found.frame->message_id != 76) continue;
+      const auto command = PayloadReader(found.frame->payload).at<std::uint16_t>(28);
+      const auto acknowledge = [&](std::uint8_t result, std::uint8_t system, std::uint8_t component) {
+        (void)test.peer.send(frame_bytes(77,
+                                         PayloadWriter(10)
+                                             .put(0, command)
+                                             .put(2, result)
+                                             .put(8, system)
+                                             .put(9, component)
+                                             .bytes(),
+                                         1));
+      };
+      acknowledge(2, 254, 190);
+      acknowledge(3, 255, 230);
+      acknowledge(0, 255, 190);
+      return;
+    }
+  });
+  const auto exchange = test.session->converse(nullptr);
+  const Status started = start_mission(*exchange);
+  EXPECT_TRUE(started.ok()) << started.error().message;
+  vehicle.join();
+}
+
 TEST(Vehicle, SaysWhatWasHeardInsteadOfAVehicle) {
   VehicleOptions options;
   options.system = 9;
