@@ -23,7 +23,7 @@ class LinkOutput final : public PlaybackOutput {
       : records_(std::move(records)), address_(std::move(address)) {}
 
   Status open(const std::atomic<bool>* /*stop*/) override {
-    auto link = mavlink::open_byte_link(address_, false);
+    auto link = mavlink::open_byte_link(address_, false, true);
     if (!link) return link.error();
     link_ = std::move(*link);
     address_ = link_->address();
@@ -41,7 +41,7 @@ class LinkOutput final : public PlaybackOutput {
     const auto hear = [this](mavlink::PeerId peer, std::span<const std::uint8_t> /*bytes*/) {
       heard_[peer] = true;
     };
-    if (link_->exchange(hear)) return;
+    if (link_->exchange(now, hear, [](mavlink::PeerId /*peer*/) {})) return;
     link_.reset();
     retry_ = now + kReopenAfter;
   }

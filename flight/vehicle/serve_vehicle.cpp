@@ -22,6 +22,7 @@ Status serve_vehicle(SimulatedVehicle& vehicle,
   flight::mavlink::LinkOptions options;
   options.system = vehicle.setup().system;
   options.component = 1;  // MAV_COMP_ID_AUTOPILOT1
+  options.keeps_silent_peers = true;
   auto link = FrameLink::create(address, options, LinkClock::now());
   if (!link) return link.error();
   opened((*link)->address());

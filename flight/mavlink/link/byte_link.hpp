@@ -3,6 +3,7 @@
 
 #include <poll.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,6 +23,10 @@ namespace overfly::flight::mavlink {
 using PeerId = std::uint32_t;
 inline constexpr PeerId kMaxPeers = 16;
 
+/// A "tcp-listen:" connection on which nothing was received for this time gives its place to a new
+/// one, and a TCP connection ends if its other side does not answer the network for it.
+inline constexpr std::chrono::seconds kSilenceLimit{10};
+
 /// An open link. No call blocks. Not thread-safe.
 class ByteLink {
  public:
@@ -32,11 +37,17 @@ class ByteLink {
   /// Adds the descriptors to wait for.
   virtual void add_to_poll(std::vector<pollfd>& descriptors) const = 0;
 
+  using TimePoint = std::chrono::steady_clock::time_point;
   using Take = std::function<void(PeerId, std::span<const std::uint8_t>)>;
+  /// A number belongs to another peer from now on.
+  using Replace = std::function<void(PeerId)>;
   /// Passes on what has arrived, at most 256 KiB, so that a flood of bytes does not keep the
-  /// caller from its other work; finishes connecting; sends what waits to be sent.
+  /// caller from its other work; finishes connecting; sends what waits to be sent. `replace` is
+  /// called after the last bytes of the old peer and before the first ones of the new peer.
   /// Errors: kIo with the system's reason; the link has to be opened again.
-  [[nodiscard]] virtual Status exchange(const Take& take) = 0;
+  [[nodiscard]] virtual Status exchange(TimePoint now,
+                                        const Take& take,
+                                        const Replace& replace) = 0;
 
   /// Whether there is a peer to send to.
   [[nodiscard]] virtual bool connected() const = 0;

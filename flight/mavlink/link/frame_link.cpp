@@ -43,7 +43,8 @@ Result<std::unique_ptr<FrameLink>> FrameLink::create(const LinkAddress& address,
 }
 
 Status FrameLink::open(LinkClock::time_point now) {
-  Result<std::unique_ptr<ByteLink>> link = open_byte_link(address_, options_.read_only);
+  Result<std::unique_ptr<ByteLink>> link = open_byte_link(
+      address_, options_.read_only, options_.keeps_silent_peers);
   if (!link) return link.error();
   link_ = std::move(*link);
   address_ = link_->address();
@@ -53,16 +54,22 @@ Status FrameLink::open(LinkClock::time_point now) {
 
 void FrameLink::failed(const Error& error, LinkClock::time_point now) {
   link_.reset();
-  ways_.fill(std::nullopt);
-  // Half a frame of the old connection has no other half in the new one.
-  for (auto& input : inputs_) {
-    if (!input) continue;
-    input->bytes.clear();
-    input->heard = false;
-  }
+  for (PeerId peer = 0; peer < kMaxPeers; ++peer) forget(peer);
   ++counts_.failures;
   counts_.last_failure = error.message;
   retry_ = now + back_off_.next();
+}
+
+void FrameLink::forget(PeerId peer) {
+  for (auto& way : ways_) {
+    if (way == peer) way.reset();
+  }
+  std::unique_ptr<PeerInput>& input = inputs_[peer];
+  if (!input) return;
+  counts_.bad_checksums += input->finder.counts().bad_checksums;
+  // Half a frame of the old peer has no other half in the bytes of the new one.
+  counts_.skipped_bytes += input->finder.counts().skipped_bytes + input->bytes.size();
+  input.reset();
 }
 
 void FrameLink::wake() {
@@ -96,7 +103,7 @@ void FrameLink::step(LinkClock::time_point now,
   const auto take_piece = [&](PeerId peer, std::span<const std::uint8_t> bytes) {
     take_bytes(peer, bytes, take);
   };
-  Status status = link_->exchange(take_piece);
+  Status status = link_->exchange(now, take_piece, [this](PeerId peer) { forget(peer); });
   const bool may_wait = address_.kind == LinkKind::kTcp && !link_->connected();
   if (status.ok() && may_wait && now - opened_ > kConnectPatience) {
     status = Error{ErrorCode::kIo, address_.text() + ": connecting: no answer within 5 s"};

@@ -34,6 +34,8 @@ struct LinkOptions {
   bool sign = false;                        ///< what is sent, with `key`
   std::uint8_t link_id = 0;                 ///< in signatures
   std::shared_ptr<FrameRecorder> recorder;  ///< of what is received and accepted; may be null
+  /// Of a vehicle: connections on "tcp-listen:" may be silent, as those that only watch.
+  bool keeps_silent_peers = false;
 };
 
 /// Messages of one component.
@@ -101,6 +103,9 @@ class FrameLink {
   FrameLink(LinkAddress address, LinkOptions options, LinkClock::time_point now);
   Status open(LinkClock::time_point now);
   void failed(const Error& error, LinkClock::time_point now);
+  /// Forgets what was received from the peer that had a number, and the ways to systems by it. Its
+  /// counts stay.
+  void forget(PeerId peer);
   void wait(LinkClock::time_point now, std::chrono::milliseconds patience);
   void take_bytes(PeerId peer, std::span<const std::uint8_t> bytes, const Take& take);
   void take_frame(PeerId peer, const FrameFinder::Found& found, const Take& take);

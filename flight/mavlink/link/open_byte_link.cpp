@@ -5,7 +5,9 @@
 
 namespace overfly::flight::mavlink {
 
-Result<std::unique_ptr<ByteLink>> open_byte_link(const LinkAddress& address, bool read_only) {
+Result<std::unique_ptr<ByteLink>> open_byte_link(const LinkAddress& address,
+                                                 bool read_only,
+                                                 bool keeps_silent_peers) {
   switch (address.kind) {
     case LinkKind::kUdp:
       if (read_only) {
@@ -18,7 +20,7 @@ Result<std::unique_ptr<ByteLink>> open_byte_link(const LinkAddress& address, boo
     case LinkKind::kUdpListen:
       return open_udp(address, read_only);
     case LinkKind::kTcpListen:
-      return listen_tcp(address, read_only);
+      return listen_tcp(address, read_only, keeps_silent_peers);
     case LinkKind::kTcp:
       return connect_tcp(address, read_only);
     default:

@@ -35,7 +35,9 @@ class StreamLink : public ByteLink {
     descriptors.push_back(
         {stream_.get(), static_cast<short>(writes ? POLLIN | POLLOUT : POLLIN), 0});
   }
-  [[nodiscard]] Status exchange(const Take& take) override {
+  [[nodiscard]] Status exchange(TimePoint now,
+                                const Take& take,
+                                const Replace& /*replace*/) override {
     if (connecting_) {
       if (Status status = finish_connecting(); !status || connecting_) return status;
     }
@@ -46,6 +48,7 @@ class StreamLink : public ByteLink {
       if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return {};
       if (got < 0) return system_failure(address(), "receiving", errno);
       if (got == 0) return Error{ErrorCode::kIo, address().text() + ": closed by the other side"};
+      heard_ = now;
       take(0, std::span(buffer_).first(static_cast<std::size_t>(got)));
     }
     return {};
@@ -53,11 +56,14 @@ class StreamLink : public ByteLink {
   [[nodiscard]] bool connected() const override { return stream_.open() && !connecting_; }
 
  protected:
-  void use(FileDescriptor stream) {
+  void use(FileDescriptor stream, TimePoint now) {
     stream_ = std::move(stream);
     waiting_.clear();
+    heard_ = now;
   }
   [[nodiscard]] bool has_stream() const { return stream_.open(); }
+  /// When bytes were received last, or the stream was first used.
+  [[nodiscard]] TimePoint heard() const { return heard_; }
 
  private:
   Status finish_connecting() {
@@ -94,35 +100,9 @@ class StreamLink : public ByteLink {
   bool is_socket_;
   FileDescriptor stream_;
   bool connecting_;
+  TimePoint heard_;
   std::vector<std::uint8_t> buffer_;
   std::vector<std::uint8_t> waiting_;  ///< to be sent
-};
-
-class ListeningLink final : public StreamLink {
- public:
-  ListeningLink(const LinkAddress& address, bool read_only, FileDescriptor listener)
-      : StreamLink(address, read_only, {}, false), listener_(std::move(listener)) {}
-
-  using ByteLink::set_port;
-
-  void add_to_poll(std::vector<pollfd>& descriptors) const override {
-    descriptors.push_back({listener_.get(), POLLIN, 0});
-    StreamLink::add_to_poll(descriptors);
-  }
-  [[nodiscard]] Status exchange(const Take& take) override {
-    if (has_stream()) {
-      // The end of a connection is not the end of this link.
-      if (Status status = StreamLink::exchange(take); !status) use({});
-    }
-    FileDescriptor accepted(
-        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    if (!accepted.open() || has_stream()) return {};
-    use(std::move(accepted));
-    return {};
-  }
-
- private:
-  FileDescriptor listener_;
 };
 
 /// Small messages are sent at once.
@@ -130,6 +110,59 @@ void send_without_delay(int socket) {
   const int on = 1;
   (void)::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
+
+/// Ends a connection whose other side does not acknowledge for kSilenceLimit, also while nothing is
+/// sent: a machine that was switched off or lost its network closes no connection.
+void end_when_unanswered(int socket) {
+  const int on = 1;
+  const int idle_s = static_cast<int>(kSilenceLimit.count()) / 2;
+  const int interval_s = 1;
+  const auto limit_ms = static_cast<unsigned>(std::chrono::milliseconds(kSilenceLimit).count());
+  (void)::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+  (void)::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof idle_s);
+  (void)::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof interval_s);
+  (void)::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &limit_ms, sizeof limit_ms);
+}
+
+class ListeningLink final : public StreamLink {
+ public:
+  ListeningLink(const LinkAddress& address,
+                bool read_only,
+                bool keeps_silent_peers,
+                FileDescriptor listener)
+      : StreamLink(address, read_only, {}, false),
+        keeps_silent_peers_(keeps_silent_peers),
+        listener_(std::move(listener)) {}
+
+  using ByteLink::set_port;
+
+  void add_to_poll(std::vector<pollfd>& descriptors) const override {
+    descriptors.push_back({listener_.get(), POLLIN, 0});
+    StreamLink::add_to_poll(descriptors);
+  }
+  [[nodiscard]] Status exchange(TimePoint now, const Take& take, const Replace& replace) override {
+    if (has_stream()) {
+      // The end of a connection is not the end of this link.
+      if (Status status = StreamLink::exchange(now, take, replace); !status) use({}, now);
+    }
+    FileDescriptor accepted(
+        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!accepted.open() || (has_stream() && !gives_way(now))) return {};
+    send_without_delay(accepted.get());
+    end_when_unanswered(accepted.get());
+    use(std::move(accepted), now);
+    replace(0);
+    return {};
+  }
+
+ private:
+  [[nodiscard]] bool gives_way(TimePoint now) const {
+    return !keeps_silent_peers_ && now - heard() > kSilenceLimit;
+  }
+
+  bool keeps_silent_peers_;
+  FileDescriptor listener_;
+};
 
 speed_t speed_of(std::uint32_t baud_rate) {
   switch (baud_rate) {
@@ -187,25 +220,27 @@ Result<std::unique_ptr<ByteLink>> connect_tcp(const LinkAddress& address, bool r
   Result<FileDescriptor> socket = open_socket(address, name.family(), SOCK_STREAM);
   if (!socket) return socket.error();
   send_without_delay(socket->get());
+  end_when_unanswered(socket->get());
   const bool connecting = ::connect(socket->get(), name.get(), name.size) != 0;
   if (connecting && errno != EINPROGRESS) return system_failure(address, "connecting", errno);
   return std::unique_ptr<ByteLink>(
       std::make_unique<StreamLink>(address, read_only, std::move(*socket), connecting));
 }
 
-Result<std::unique_ptr<ByteLink>> listen_tcp(const LinkAddress& address, bool read_only) {
+Result<std::unique_ptr<ByteLink>> listen_tcp(const LinkAddress& address,
+                                             bool read_only,
+                                             bool keeps_silent_peers) {
   const SocketAddress name = socket_address(address);
   Result<FileDescriptor> socket = open_socket(address, name.family(), SOCK_STREAM);
   if (!socket) return socket.error();
   const int number = socket->get();
-  // Connections inherit it.
-  send_without_delay(number);
   const int on = 1;
   (void)::setsockopt(number, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   const Result<std::uint16_t> port = bind_socket(number, address);
   if (!port) return port.error();
   if (::listen(number, 4) != 0) return system_failure(address, "listening", errno);
-  auto link = std::make_unique<ListeningLink>(address, read_only, std::move(*socket));
+  auto link = std::make_unique<ListeningLink>(
+      address, read_only, keeps_silent_peers, std::move(*socket));
   link->set_port(*port);
   return std::unique_ptr<ByteLink>(std::move(link));
 }

@@ -31,7 +31,7 @@ class UdpLink final : public ByteLink {
   void add_to_poll(std::vector<pollfd>& descriptors) const override {
     descriptors.push_back({socket_.get(), POLLIN, 0});
   }
-  [[nodiscard]] Status exchange(const Take& take) override;
+  [[nodiscard]] Status exchange(TimePoint now, const Take& take, const Replace& replace) override;
   [[nodiscard]] bool connected() const override { return count_ > 0; }
 
  private:
@@ -41,7 +41,7 @@ class UdpLink final : public ByteLink {
   };
 
   bool do_send(PeerId peer, std::span<const std::uint8_t> bytes) override;
-  PeerId peer_of(const SocketAddress& sender);
+  PeerId peer_of(const SocketAddress& sender, const Replace& replace);
 
   FileDescriptor socket_;
   std::vector<std::uint8_t> buffer_;
@@ -51,7 +51,7 @@ class UdpLink final : public ByteLink {
   bool fixed_ = false;
 };
 
-PeerId UdpLink::peer_of(const SocketAddress& sender) {
+PeerId UdpLink::peer_of(const SocketAddress& sender, const Replace& replace) {
   PeerId found = 0;
   while (found < count_ && !peers_[found].address.same_as(sender)) ++found;
   if (found == count_) {
@@ -61,6 +61,7 @@ PeerId UdpLink::peer_of(const SocketAddress& sender) {
       for (PeerId i = 0; i < kMaxPeers; ++i) {
         if (i == 0 || peers_[i].heard < peers_[found].heard) found = i;
       }
+      replace(found);
     }
     peers_[found].address = sender;
   }
@@ -68,7 +69,7 @@ PeerId UdpLink::peer_of(const SocketAddress& sender) {
   return found;
 }
 
-Status UdpLink::exchange(const Take& take) {
+Status UdpLink::exchange(TimePoint /*now*/, const Take& take, const Replace& replace) {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < kDatagramsAtOnce && bytes < (std::size_t{1} << 18U); ++i) {
     SocketAddress sender;
@@ -87,7 +88,7 @@ Status UdpLink::exchange(const Take& take) {
     }
     bytes += static_cast<std::size_t>(got);
     if (fixed_ && !peers_[0].address.same_as(sender)) continue;
-    take(fixed_ ? 0 : peer_of(sender), std::span(buffer_).first(static_cast<std::size_t>(got)));
+    take(fixed_ ? 0 : peer_of(sender, replace), std::span(buffer_).first(static_cast<std::size_t>(got)));
   }
   return {};
 }

@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/tcp.h>
 
 #include <cstdlib>
+#include <deque>
 #include <string>
 
 #include "flight/mavlink/link/open_byte_link.hpp"
@@ -125,6 +127,33 @@ TEST(FrameLink, KeepsFramesOfSeveralPeersApart) {
   EXPECT_THAT(sent_frames_in(b.receive()), ElementsAre("255:0"));
 }
 
+/// A link holds 16 peers.
+TEST(FrameLink, ForgetsAPeerWhoseNumberAnotherOneGets) {
+  TestLink link("udp-listen:127.0.0.1:0");
+  std::deque<PeerSocket> peers;
+  const auto speak = [&](std::uint8_t system) {
+    peers.emplace_back(SOCK_DGRAM);
+    EXPECT_TRUE(peers.back().connect_to(link.port()));
+    EXPECT_TRUE(peers.back().send(attitude_frame(0, system)));
+    EXPECT_TRUE(link.step_until_frames(peers.size()));
+  };
+  speak(1);
+  const Bytes half = attitude_frame(1);
+  ASSERT_TRUE(peers[0].send(std::span(half).first(20)));
+  for (std::uint8_t system = 2; system <= 17; ++system) speak(system);
+  EXPECT_EQ(link.frames.back(), "17:0");
+  EXPECT_EQ(link.link->counts().bad_checksums, 0U);
+  EXPECT_EQ(link.link->counts().skipped_bytes, 20U);
+  // The way to system 1 is not known any more: not that of system 17.
+  ASSERT_TRUE(link.link->send(kHeartbeatId, kBeat, 1).ok());
+  EXPECT_THAT(sent_frames_in(peers[1].receive()), ElementsAre("255:0"));
+  EXPECT_THAT(sent_frames_in(peers[16].receive()), ElementsAre("255:0"));
+  EXPECT_FALSE(peers[0].readable(0));
+  ASSERT_TRUE(link.link->send(kHeartbeatId, kBeat, 2).ok());
+  EXPECT_THAT(sent_frames_in(peers[1].receive()), ElementsAre("255:0"));
+  EXPECT_FALSE(peers[16].readable(0));
+}
+
 TEST(FrameLink, SurvivesGarbageAndGetsBackInStep) {
   TestLink link("udp-listen:127.0.0.1:0");
   PeerSocket peer(SOCK_DGRAM);
@@ -156,7 +185,8 @@ TEST(FrameLink, ReadOnlyLinksNeverSend) {
   ASSERT_TRUE(bytes.ok());
   PeerSocket other_end = listener.accept();
   for (int i = 0; i < 500 && !(*bytes)->connected(); ++i) {
-    ASSERT_TRUE((*bytes)->exchange([](PeerId, std::span<const std::uint8_t>) {}).ok());
+    ASSERT_TRUE(
+        (*bytes)->exchange({}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {}).ok());
   }
   ASSERT_TRUE((*bytes)->connected());
   EXPECT_FALSE((*bytes)->send(0, kBeat));
@@ -257,6 +287,75 @@ TEST(FrameLink, ListensForOneTcpConnectionAtATime) {
   ASSERT_TRUE(next.connect_to(link.port()));
   ASSERT_TRUE(next.send(attitude_frame(2)));
   EXPECT_TRUE(link.step_until_frames(3));
+}
+
+TEST(FrameLink, GivesTheOnlyPlaceOfASilentConnectionToANewOne) {
+  for (const bool keeps_silent_peers : {false, true}) {
+    LinkOptions options;
+    options.keeps_silent_peers = keeps_silent_peers;
+    TestLink link("tcp-listen:127.0.0.1:0", options);
+    PeerSocket silent(SOCK_STREAM);
+    ASSERT_TRUE(silent.connect_to(link.port()));
+    link.now += milliseconds(5000);
+    const Bytes half = attitude_frame(1);
+    ASSERT_TRUE(silent.send(std::span(half).first(20)));
+    ASSERT_TRUE(link.step_until([&] { return link.link->counts().received_bytes == 20; }));
+    link.now += milliseconds(10000);
+    PeerSocket early(SOCK_STREAM);
+    ASSERT_TRUE(early.connect_to(link.port()));
+    ASSERT_TRUE(link.step_until([&] { return early.readable(0); }));
+    EXPECT_TRUE(early.receive().empty());  // closed
+    EXPECT_FALSE(silent.readable(0));
+    link.now += milliseconds(1);
+    PeerSocket next(SOCK_STREAM);
+    ASSERT_TRUE(next.connect_to(link.port()));
+    ASSERT_TRUE(next.send(attitude_frame(2)));
+    PeerSocket& closed = keeps_silent_peers ? next : silent;
+    ASSERT_TRUE(link.step_until([&] { return closed.readable(0); }));
+    EXPECT_TRUE(closed.receive().empty());
+    if (keeps_silent_peers) continue;
+    ASSERT_TRUE(link.step_until_frames(1));
+    EXPECT_THAT(link.frames, ElementsAre("1:2"));
+    EXPECT_EQ(link.link->counts().bad_checksums, 0U);
+    EXPECT_EQ(link.link->counts().skipped_bytes, 20U);
+  }
+}
+
+/// A machine that is switched off closes no connection.
+TEST(FrameLink, EndsTcpConnectionsThatNobodyAcknowledges) {
+  const auto connection_of = [](const ByteLink& link) {
+    std::vector<pollfd> descriptors;
+    link.add_to_poll(descriptors);
+    return descriptors.back().fd;
+  };
+  const auto expect_limits = [](int socket) {
+    int value = 0;
+    socklen_t size = sizeof value;
+    ASSERT_EQ(::getsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &value, &size), 0);
+    EXPECT_EQ(value, 1);
+    ASSERT_EQ(::getsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &value, &size), 0);
+    EXPECT_EQ(value, 5);
+    ASSERT_EQ(::getsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &value, &size), 0);
+    EXPECT_EQ(value, 10000);
+    ASSERT_EQ(::getsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &value, &size), 0);
+    EXPECT_NE(value, 0);
+  };
+  auto listening = open_byte_link(*parse_link_address("tcp-listen:127.0.0.1:0", "link"), false);
+  ASSERT_TRUE(listening.ok());
+  const std::string port = std::to_string((*listening)->address().port);
+  auto connected = open_byte_link(*parse_link_address("tcp:127.0.0.1:" + port, "link"), false);
+  ASSERT_TRUE(connected.ok());
+  for (int i = 0; i < 500 && !(*listening)->connected(); ++i) {
+    std::vector<pollfd> descriptors;
+    (*listening)->add_to_poll(descriptors);
+    (void)::poll(descriptors.data(), descriptors.size(), 10);
+    ASSERT_TRUE((*listening)
+                    ->exchange({}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {})
+                    .ok());
+  }
+  ASSERT_TRUE((*listening)->connected());
+  expect_limits(connection_of(**listening));
+  expect_limits(connection_of(**connected));
 }
 
 TEST(FrameLink, SendsFirstByUdp) {
