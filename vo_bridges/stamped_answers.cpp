@@ -1,6 +1,6 @@
 #include "vo_bridges/stamped_answers.hpp"
 
-#include <cstdlib>
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -9,6 +9,12 @@ namespace {
 
 /// Number of frames that are remembered: half a minute at 31 Hz.
 constexpr std::size_t kRemembered = 1000;
+
+/// |a - b| of any two stamps [ns]; as signed numbers the difference could overflow.
+std::uint64_t distance_ns(std::int64_t a, std::int64_t b) {
+  const auto larger = static_cast<std::uint64_t>(std::max(a, b));
+  return larger - static_cast<std::uint64_t>(std::min(a, b));
+}
 
 }  // namespace
 
@@ -20,13 +26,14 @@ void StampedAnswers::expect(std::int64_t t_ns) {
 
 StampedAnswers::Frames::iterator StampedAnswers::nearest(std::int64_t t_ns) {
   const auto after = frames_.lower_bound(t_ns);
-  const auto distance_ns = [&](Frames::iterator frame) { return std::abs(frame->first - t_ns); };
+  const auto distance = [&](Frames::iterator frame) { return distance_ns(frame->first, t_ns); };
   auto best = after;
   if (after != frames_.begin()) {
     const auto before = std::prev(after);
-    if (best == frames_.end() || distance_ns(before) < distance_ns(best)) best = before;
+    if (best == frames_.end() || distance(before) < distance(best)) best = before;
   }
-  return best != frames_.end() && distance_ns(best) <= tolerance_ns_ ? best : frames_.end();
+  const auto tolerance_ns = static_cast<std::uint64_t>(tolerance_ns_);
+  return best != frames_.end() && distance(best) <= tolerance_ns ? best : frames_.end();
 }
 
 bool StampedAnswers::deliver(std::int64_t t_ns, VoEstimate answer) {

@@ -28,7 +28,7 @@ class StampedAnswers {
  public:
   /// @param tolerance_ns  allowed difference between the stamps of an answer and its frame.
   /// Estimators that store seconds as a double return Unix times to about 120 ns. Must be less than
-  /// half a frame period.
+  /// half a frame period. @pre >= 0
   explicit StampedAnswers(std::int64_t tolerance_ns = 0) : tolerance_ns_(tolerance_ns) {}
 
   /// Registers a frame with a stamp later than all before it. Call before the frame is sent.

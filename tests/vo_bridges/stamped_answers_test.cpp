@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <thread>
 
 namespace overfly {
@@ -103,6 +104,21 @@ TEST(StampedAnswers, MatchesTheNearestFrameWithinItsTolerance) {
   EXPECT_EQ(answers.wait(100, kAtOnce)->sample.frame, 1);
   EXPECT_FALSE(answers.deliver(126, answer_of(3)));
   EXPECT_EQ(answers.counts().unknown, 1);
+}
+
+/// The difference of two such stamps is no 64-bit number with a sign.
+TEST(StampedAnswers, MatchesNoStampThatIsFarFromEveryFrame) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  for (const std::int64_t tolerance_ns : {0, 1000}) {
+    for (const std::int64_t frame_ns : {std::int64_t{0}, Limits::min(), Limits::max()}) {
+      StampedAnswers answers(tolerance_ns);
+      answers.expect(frame_ns);
+      for (const std::int64_t t_ns : {Limits::min(), std::int64_t{0}, Limits::max()}) {
+        EXPECT_EQ(answers.deliver(t_ns, answer_of(1)), t_ns == frame_ns) << t_ns;
+      }
+      EXPECT_EQ(answers.counts().unknown, 2);
+    }
+  }
 }
 
 TEST(StampedAnswers, EndsEveryWaitWhenStopped) {

@@ -1,8 +1,11 @@
 // Estimators that do not start, and options that are refused.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <string>
 
 #include "tests/support/support.hpp"
 #include "tests/vo_bridges/process/process_fixture.hpp"
@@ -46,6 +49,23 @@ TEST_F(ProcessStart, AFileThatCannotBeExecutedIsNamed) {
   options.working_folder = folder.path() / "absent";
   EXPECT_THAT(start_error(options).message,
               HasSubstr("working_folder = '" + options.working_folder.string()));
+}
+
+TEST_F(ProcessStart, AFailureKeepsNoDescriptor) {
+  const auto descriptors = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                         std::filesystem::directory_iterator());
+  };
+  const char* const given = std::getenv("TMPDIR");
+  const std::string before = given != nullptr ? given : "";
+  ::setenv("TMPDIR", "/proc", 1);  // where nobody can make a folder
+  ProcessEstimatorOptions options = scripted("good");
+  options.listen = "tcp:127.0.0.1:0";
+  EXPECT_THAT(start_error(options).message, HasSubstr("cannot make folder"));
+  const auto open = descriptors();
+  for (int i = 0; i < 5; ++i) (void)start_error(options);
+  EXPECT_EQ(descriptors(), open);
+  given != nullptr ? ::setenv("TMPDIR", before.c_str(), 1) : ::unsetenv("TMPDIR");
 }
 
 TEST_F(ProcessStart, AChildThatEndsAtOnceIsQuoted) {

@@ -56,6 +56,8 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     return Error{ErrorCode::kIo, "pipe: " + std::generic_category().message(errno)};
   }
+  FileDescriptor reading(ends[0]);
+  FileDescriptor writing(ends[1]);
   Result<PrivateFolder> temporary = PrivateFolder::create();
   if (!temporary) return temporary.error();
   std::unique_ptr<ChildProcess> child(new ChildProcess(std::move(*temporary)));
@@ -63,9 +65,8 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const ChildCommand& co
   own.environment.push_back(child->family_.mark());
   own.environment.push_back("TMPDIR=" + child->temporary_->path().string());
   child->output_ = std::move(output);
-  child->output_pipe_ = FileDescriptor(ends[0]);
-  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  FileDescriptor writing(ends[1]);
+  ::fcntl(reading.get(), F_SETFL, O_NONBLOCK);
+  child->output_pipe_ = std::move(reading);
   child->wake_ = FileDescriptor(::eventfd(0, EFD_CLOEXEC));
   std::promise<Result<int>> started;
   std::future<Result<int>> start_result = started.get_future();
