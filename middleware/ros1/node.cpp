@@ -21,8 +21,10 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 /// Never destroyed: roscpp's threads may log after main() has returned.
-Node* the_node = nullptr;
+std::atomic<Node*> the_node = nullptr;
 std::timed_mutex joining;
+/// Why roscpp stopped in the middle of its start, which it cannot repeat. Guarded by `joining`.
+std::optional<Error> broken_start;
 
 void log_line(void* /*logger*/,
               ros::console::Level level,
@@ -30,7 +32,10 @@ void log_line(void* /*logger*/,
               const char* /*file*/,
               const char* /*function*/,
               int /*line*/) {
-  if (level >= ros::console::levels::Warn) the_node->say(std::string("ROS: ") + text);
+  Node* const node = the_node;
+  if (node != nullptr && level >= ros::console::levels::Warn) {
+    node->say(std::string("ROS: ") + text);
+  }
 }
 
 /// Errors: kNotFound; kCancelled.
@@ -91,30 +96,34 @@ Result<Node*> Node::join(const XmlRpcAddress& master,
   while (!lock.try_lock_for(kCancelPeriod)) {
     if (is_cancelled(cancel)) return cancelled("the ROS master at " + master.uri());
   }
-  if (the_node != nullptr && the_node->master_ != master) {
+  if (broken_start) return *broken_start;
+  const Node* const before = the_node;
+  if (before != nullptr && before->master_ != master) {
     return Error{ErrorCode::kConflict,
                  "master_uri = " + master.uri() + ": this process is a node of the master at " +
-                     the_node->master_.uri() +
+                     before->master_.uri() +
                      " already, and ROS allows one node per process: start another overfly"};
   }
   if (Status status = await_master(master, patience, cancel); !status) return status.error();
-  if (the_node == nullptr) {
+  if (before == nullptr) {
     if (Status status = check_name_is_free(master, "/" + name, cancel); !status) {
       return status.error();
     }
     if (Status status = start(master, name); !status) return status.error();
   }
+  Node* const node = the_node;
   if (!alive()) {
     return Error{ErrorCode::kInternal,
-                 "the ROS node " + the_node->name_ +
+                 "the ROS node " + node->name_ +
                      " of this process was shut down (rosnode kill): restart overfly"};
   }
-  return the_node;
+  return node;
 }
 
 Status Node::start(const XmlRpcAddress& master, const std::string& name) {
   ROSCONSOLE_AUTOINIT;
-  the_node = new Node(master, "/" + name);
+  Node* const node = new Node(master, "/" + name);
+  the_node = node;
   ros::console::backend::function_print = log_line;
   std::map<std::string, std::string> settings = {{"__master", master.uri()}};
   if (master.is_loopback()) stay_on_loopback();
@@ -122,9 +131,13 @@ Status Node::start(const XmlRpcAddress& master, const std::string& name) {
     ros::init(settings, name, ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
     ros::master::setRetryTimeout(ros::WallDuration(5.0));
     ros::start();
-    the_node->name_ = ros::this_node::getName();  // with the namespace of ROS_NAMESPACE
+    node->name_ = ros::this_node::getName();  // with the namespace of ROS_NAMESPACE
   } catch (const std::exception& failure) {
-    return Error{ErrorCode::kInternal, std::string("ROS cannot be started: ") + failure.what()};
+    // There is no node: the next call has to try again instead of returning this one.
+    the_node = nullptr;
+    Error error{ErrorCode::kInternal, std::string("ROS cannot be started: ") + failure.what()};
+    if (ros::isStarted()) broken_start = error;
+    return error;
   }
   return {};
 }

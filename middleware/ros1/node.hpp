@@ -26,7 +26,8 @@ class Node {
   /// @param patience  time limit for the master's answer
   /// @param cancel    may be null; set to true to end the wait within 50 ms
   /// Errors: kCancelled; kNotFound if the master does not answer in time; kConflict if this process
-  /// is a node of another master, or if the master has a living node of that name; kInternal.
+  /// is a node of another master, or if the master has a living node of that name; kInternal if the
+  /// node was shut down, or with the reason if ROS cannot be started.
   [[nodiscard]] static Result<Node*> join(const XmlRpcAddress& master,
                                           const std::string& name,
                                           std::chrono::nanoseconds patience,

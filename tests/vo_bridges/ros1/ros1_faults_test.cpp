@@ -9,6 +9,7 @@
 
 #include "middleware/ros1/findings.hpp"
 #include "middleware/ros1/master.hpp"
+#include "middleware/ros1/node.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
 
 namespace overfly::testing {
@@ -87,6 +88,23 @@ TEST(Ros1Faults, LeavesHandlersOfSignalsAlone) {
   const auto port = created(options);
   EXPECT_EQ(std::signal(SIGINT, SIG_DFL), static_cast<void (*)(int)>(handler));
   EXPECT_EQ(std::signal(SIGTERM, SIG_DFL), static_cast<void (*)(int)>(handler));
+}
+
+TEST(Ros1Node, IsStartedAfterAStartThatFailed) {
+  ROS_MASTER_OR_SKIP();
+  if (ros1::Node::alive()) GTEST_SKIP() << "this process is a node already, by another suite";
+  const auto master = ros1::parse_xml_rpc_address(RosMaster::instance().uri());
+  ASSERT_TRUE(master);
+  for (int i = 0; i < 2; ++i) {
+    const auto failed = ros1::Node::join(*master, "over~fly", 10s);
+    ASSERT_FALSE(failed.ok());
+    EXPECT_EQ(failed.error().code, ErrorCode::kInternal);
+    EXPECT_THAT(failed.error().message,
+                AllOf(HasSubstr("ROS cannot be started: "), HasSubstr("over~fly")));
+  }
+  const auto node = ros1::Node::join(*master, "overfly_again", 10s);
+  ASSERT_TRUE(node.ok()) << node.error().message;
+  EXPECT_EQ((*node)->name(), "/overfly_again");
 }
 
 TEST(Ros1Faults, SaysThatNobodySubscribes) {
