@@ -1,5 +1,7 @@
 #include "flight/live/stop_watch.hpp"
 
+#include <utility>
+
 #include "flight/mavlink/messages.hpp"
 #include "flight/mavlink/payload.hpp"
 
@@ -34,7 +36,12 @@ std::string StopWatch::take(const mavlink::Frame& frame) {
     }
     case MessageId::kMissionCurrent: {
       const std::uint16_t item = mavlink::decode_mission_sequence(frame);
-      if (conditions_.mission_item >= 0 && item == conditions_.mission_item) {
+      const std::optional<std::uint16_t> before = std::exchange(item_, item);
+      if (conditions_.mission_item < 0 || !before || *before == item) return {};
+      // Items without a place are passed between two messages.
+      const bool passed =
+          *before < conditions_.mission_item && item > conditions_.mission_item;
+      if (passed || item == conditions_.mission_item) {
         return "the mission has come to item " + std::to_string(item);
       }
       return {};

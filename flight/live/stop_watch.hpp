@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "flight/live/live_options.hpp"
@@ -21,6 +22,7 @@ class StopWatch {
   StopConditions conditions_;
   bool was_armed_ = false;
   bool was_in_air_ = false;
+  std::optional<std::uint16_t> item_;  ///< of the mission, reported last
 };
 
 }  // namespace overfly::flight::live

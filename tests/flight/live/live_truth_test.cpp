@@ -213,7 +213,9 @@ TEST(LiveTruth, EndsByItsStopConditions) {
   options.stop.mission_item = 7;
   OpenedTruth mission(options);
   ASSERT_NE(mission.truth, nullptr);
-  mission.made->send(frame_bytes(42, PayloadWriter(18).put(0, std::uint16_t{7}).bytes(), 0));
+  for (const std::uint16_t item : {std::uint16_t{6}, std::uint16_t{7}}) {
+    mission.made->send(frame_bytes(42, PayloadWriter(18).put(0, item).bytes(), 0));
+  }
   EXPECT_FALSE(mission.truth->state_at(mission.flight_ns(mission.last_ms) + 1)->has_value());
   EXPECT_THAT(mission.truth->warnings().back(), HasSubstr("the mission has come to item 7"));
 }
