@@ -28,10 +28,10 @@ struct StartCondition {
 
 /// Conditions that end the flight, in addition to a restart of the vehicle.
 struct StopConditions {
-  bool on_disarm = false;          ///< when the vehicle is disarmed after it was armed
-  bool on_landing = false;         ///< when it reports to be on the ground after it was in the air
-  /// When this item of the mission becomes the current one, or one after it where one before it was;
-  /// the item that is current at first does not count. Negative: never.
+  bool on_disarm = false;   ///< when the vehicle is disarmed after it was armed
+  bool on_landing = false;  ///< when it reports to be on the ground after it was in the air
+  /// When this item of the mission becomes the current one, or one after it where one before it
+  /// was; the item that is current at first does not count. Negative: never.
   std::int32_t mission_item = -1;
 };
 

@@ -39,8 +39,7 @@ std::string StopWatch::take(const mavlink::Frame& frame) {
       const std::optional<std::uint16_t> before = std::exchange(item_, item);
       if (conditions_.mission_item < 0 || !before || *before == item) return {};
       // Items without a place are passed between two messages.
-      const bool passed =
-          *before < conditions_.mission_item && item > conditions_.mission_item;
+      const bool passed = *before < conditions_.mission_item && item > conditions_.mission_item;
       if (passed || item == conditions_.mission_item) {
         return "the mission has come to item " + std::to_string(item);
       }

@@ -20,8 +20,8 @@ using namespace overfly;
 using namespace overfly::flight;
 using namespace overfly::flight::mavlink;
 
-/// Answers whatever is asked with the same messages, then with silence. Nothing has come before it is
-/// waited for.
+/// Answers whatever is asked with the same messages, then with silence. Nothing has come before it
+/// is waited for.
 class HostileVehicle final : public Exchange {
  public:
   explicit HostileVehicle(std::deque<HeldMessage> messages) : messages_(std::move(messages)) {}

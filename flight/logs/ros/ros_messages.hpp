@@ -63,12 +63,12 @@ struct RosTopicName {
 
 /// Reads the header, and the position and attitude of types that have them.
 ///
-/// Frames are those of REP-103: a world east-north-up, a body forward-left-up. A frame_id whose last
-/// word is "ned" ("odom_ned") is a world north-east-down, a frame of the body whose last word is
-/// "frd" is forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of Imu.
-/// An Odometry whose child_frame_id is an optical frame has the pose of that camera (camera_frame).
-/// An Imu without orientation (orientation_covariance[0] = -1) gives neither. Samples of sensors
-/// are those of ros_sensors.hpp.
+/// Frames are those of REP-103: a world east-north-up, a body forward-left-up. A frame_id whose
+/// last word is "ned" ("odom_ned") is a world north-east-down, a frame of the body whose last word
+/// is "frd" is forward-right-down; the body's frame is child_frame_id of Odometry and frame_id of
+/// Imu. An Odometry whose child_frame_id is an optical frame has the pose of that camera
+/// (camera_frame). An Imu without orientation (orientation_covariance[0] = -1) gives neither.
+/// Samples of sensors are those of ros_sensors.hpp.
 /// @return empty if the message ends early, or the type is kOther
 [[nodiscard]] std::optional<RosSample> decode_ros(RosType type,
                                                   RosCursor message,

@@ -17,10 +17,10 @@ struct RosSensorHeader {
   bool is_differential = false;
 };
 
-/// The measurements of each type, in SI units and body axes. A frame_id whose last word is "frd" has
-/// those axes, all others are forward-left-up (REP-103). The cursor is behind the header, of Imu
-/// behind the orientation and its covariance. What a message marks as unknown (an element 0 of -1
-/// in a covariance, an acceleration of exactly zero), and what cannot be right, is left out.
+/// The measurements of each type, in SI units and body axes. A frame_id whose last word is "frd"
+/// has those axes, all others are forward-left-up (REP-103). The cursor is behind the header, of
+/// Imu behind the orientation and its covariance. What a message marks as unknown (an element 0 of
+/// -1 in a covariance, an acceleration of exactly zero), and what cannot be right, is left out.
 [[nodiscard]] SensorSamples take_imu_samples(RosCursor& message, const RosSensorHeader& header);
 [[nodiscard]] SensorSamples take_field_samples(RosCursor& message, const RosSensorHeader& header);
 /// FluidPressure: a difference gives an airspeed. The temperature is in other messages: NaN.

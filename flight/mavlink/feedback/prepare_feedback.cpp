@@ -37,9 +37,10 @@ Result<bool> has_origin(Exchange& exchange, int attempts) {
     payload.put(30, exchange.target().system).put(31, exchange.target().component);
     payload.put(32, static_cast<std::uint8_t>(attempt));
     if (Status sent = exchange.send(MessageId::kCommandLong, payload); !sent) return sent.error();
-    const auto answer = wait_for(exchange,
-                                 exchange.now() + std::chrono::seconds(1),
-                                 [&](const HeldMessage& each) { return is_origin(exchange, each); });
+    const auto answer =
+        wait_for(exchange, exchange.now() + std::chrono::seconds(1), [&](const HeldMessage& each) {
+          return is_origin(exchange, each);
+        });
     if (!answer) return answer.error();
     found = answer->has_value();
   }
@@ -56,8 +57,8 @@ Status set_origin(Exchange& exchange, const GlobalPosition& origin) {
             .put(8, static_cast<std::int32_t>(std::llround(1e3 * origin.alt_msl_m)))
             .put(12, exchange.target().system));
   };
-  const auto answer = ask(
-      exchange, "setting the origin", {}, request, [&](const HeldMessage& each) {
+  const auto answer =
+      ask(exchange, "setting the origin", {}, request, [&](const HeldMessage& each) {
         return is_origin(exchange, each);
       });
   return answer ? Status() : answer.error();

@@ -43,8 +43,8 @@ Result<std::unique_ptr<FrameLink>> FrameLink::create(const LinkAddress& address,
 }
 
 Status FrameLink::open(LinkClock::time_point now) {
-  Result<std::unique_ptr<ByteLink>> link = open_byte_link(
-      address_, options_.read_only, options_.keeps_silent_peers);
+  Result<std::unique_ptr<ByteLink>> link =
+      open_byte_link(address_, options_.read_only, options_.keeps_silent_peers);
   if (!link) return link.error();
   link_ = std::move(*link);
   address_ = link_->address();

@@ -239,8 +239,8 @@ Result<std::unique_ptr<ByteLink>> listen_tcp(const LinkAddress& address,
   const Result<std::uint16_t> port = bind_socket(number, address);
   if (!port) return port.error();
   if (::listen(number, 4) != 0) return system_failure(address, "listening", errno);
-  auto link = std::make_unique<ListeningLink>(
-      address, read_only, keeps_silent_peers, std::move(*socket));
+  auto link =
+      std::make_unique<ListeningLink>(address, read_only, keeps_silent_peers, std::move(*socket));
   link->set_port(*port);
   return std::unique_ptr<ByteLink>(std::move(link));
 }

@@ -10,8 +10,8 @@ namespace overfly::flight::mavlink {
 /// "tcp:". The connection is started and established by ByteLink::exchange.
 [[nodiscard]] Result<std::unique_ptr<ByteLink>> connect_tcp(const LinkAddress& address,
                                                             bool read_only);
-/// "tcp-listen:": one connection at a time; others are closed at once until it ends. A connection on
-/// which nothing was received for kSilenceLimit ends when another one comes.
+/// "tcp-listen:": one connection at a time; others are closed at once until it ends. A connection
+/// on which nothing was received for kSilenceLimit ends when another one comes.
 /// @param keeps_silent_peers  it does not
 [[nodiscard]] Result<std::unique_ptr<ByteLink>> listen_tcp(const LinkAddress& address,
                                                            bool read_only,

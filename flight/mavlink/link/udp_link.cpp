@@ -88,7 +88,8 @@ Status UdpLink::exchange(TimePoint /*now*/, const Take& take, const Replace& rep
     }
     bytes += static_cast<std::size_t>(got);
     if (fixed_ && !peers_[0].address.same_as(sender)) continue;
-    take(fixed_ ? 0 : peer_of(sender, replace), std::span(buffer_).first(static_cast<std::size_t>(got)));
+    take(fixed_ ? 0 : peer_of(sender, replace),
+         std::span(buffer_).first(static_cast<std::size_t>(got)));
   }
   return {};
 }

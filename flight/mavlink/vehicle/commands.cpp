@@ -46,8 +46,8 @@ void keep_text(const HeldMessage& message, std::vector<std::string>& texts) {
 }
 
 /// COMMAND_ACK names the number of a command, not the request: one that comes late would answer the
-/// next request with that number. The answers to all requests of this call are therefore waited for,
-/// as long as all attempts may take.
+/// next request with that number. The answers to all requests of this call are therefore waited
+/// for, as long as all attempts may take.
 Result<Answer> answer_to(Exchange& exchange, const Command& command, const Patience& patience) {
   Answer answer;
   int requests = 0;

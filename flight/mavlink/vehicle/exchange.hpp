@@ -55,9 +55,9 @@ class Exchange {
 /// The most messages that a conversation holds.
 inline constexpr std::size_t kMaxHeldMessages = 4096;
 
-/// Whether a message is meant for a ground station: the answers of the command and mission protocols
-/// name whom they answer. 0 stands for all, as do messages without such fields (MAVLink 1 leaves
-/// those of COMMAND_ACK out).
+/// Whether a message is meant for a ground station: the answers of the command and mission
+/// protocols name whom they answer. 0 stands for all, as do messages without such fields (MAVLink 1
+/// leaves those of COMMAND_ACK out).
 /// @param system, component  of the ground station
 [[nodiscard]] bool is_addressed_to(const Frame& frame, std::uint8_t system, std::uint8_t component);
 

@@ -128,8 +128,7 @@ TEST_F(Mcap, ReadsFramesOfOtherNamesByTheirStandard) {
            mcap_message(
                1,
                0,
-               testing::odometry(
-                   Wire::kCdrLittle, kStartNs, {3.0, 5.0, 7.0}, level, world, body)));
+               testing::odometry(Wire::kCdrLittle, kStartNs, {3.0, 5.0, 7.0}, level, world, body)));
     const auto log = open_bytes(whole_file(records));
     EXPECT_TRUE(log.ok());
     return first_pose_of(*log, "/odom");

@@ -185,8 +185,10 @@ TEST(FrameLink, ReadOnlyLinksNeverSend) {
   ASSERT_TRUE(bytes.ok());
   PeerSocket other_end = listener.accept();
   for (int i = 0; i < 500 && !(*bytes)->connected(); ++i) {
-    ASSERT_TRUE(
-        (*bytes)->exchange({}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {}).ok());
+    ASSERT_TRUE((*bytes)
+                    ->exchange(
+                        {}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {})
+                    .ok());
   }
   ASSERT_TRUE((*bytes)->connected());
   EXPECT_FALSE((*bytes)->send(0, kBeat));
@@ -350,7 +352,8 @@ TEST(FrameLink, EndsTcpConnectionsThatNobodyAcknowledges) {
     (*listening)->add_to_poll(descriptors);
     (void)::poll(descriptors.data(), descriptors.size(), 10);
     ASSERT_TRUE((*listening)
-                    ->exchange({}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {})
+                    ->exchange(
+                        {}, [](PeerId, std::span<const std::uint8_t>) {}, [](PeerId) {})
                     .ok());
   }
   ASSERT_TRUE((*listening)->connected());

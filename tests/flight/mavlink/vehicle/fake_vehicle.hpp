@@ -1,4 +1,5 @@
-// A vehicle that answers at once or late, in a time of its own, and loses messages as asked (seeded).
+// A vehicle that answers at once or late, in a time of its own, and loses messages as asked
+// (seeded).
 #pragma once
 
 #include <algorithm>

@@ -137,16 +137,17 @@ TEST(Vehicle, IsNotAnsweredByWhatItTellsOtherGroundStations) {
       const auto found = finder.next(datagram, true);
       if (!found.frame || found.frame->message_id != 76) continue;
       const auto command = PayloadReader(found.frame->payload).at<std::uint16_t>(28);
-      const auto acknowledge = [&](std::uint8_t result, std::uint8_t system, std::uint8_t component) {
-        (void)test.peer.send(frame_bytes(77,
-                                         PayloadWriter(10)
-                                             .put(0, command)
-                                             .put(2, result)
-                                             .put(8, system)
-                                             .put(9, component)
-                                             .bytes(),
-                                         1));
-      };
+      const auto acknowledge =
+          [&](std::uint8_t result, std::uint8_t system, std::uint8_t component) {
+            (void)test.peer.send(frame_bytes(77,
+                                             PayloadWriter(10)
+                                                 .put(0, command)
+                                                 .put(2, result)
+                                                 .put(8, system)
+                                                 .put(9, component)
+                                                 .bytes(),
+                                             1));
+          };
       acknowledge(2, 254, 190);
       acknowledge(3, 255, 230);
       acknowledge(0, 255, 190);
