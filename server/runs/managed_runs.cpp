@@ -286,10 +286,8 @@ Result<std::shared_ptr<RunTimeline>> ManagedRuns::shelved_timeline(const std::st
   if (!timeline) return timeline;
   const Result<RunInfo> listed = index.run(id);
   if (!listed) return timeline;
-  RunInfo info = (*timeline)->info();
-  if (info.world_change != listed->world_change) {
-    info.world_change = listed->world_change;
-    (*timeline)->set_info(info);
+  if ((*timeline)->info().world_change != listed->world_change) {
+    (*timeline)->change_info([&](RunInfo& info) { info.world_change = listed->world_change; });
   }
   return timeline;
 }
@@ -304,8 +302,11 @@ void ManagedRuns::forget(const std::string& id) {
   shelf.forget(id);
   const std::lock_guard lock(mutex_);
   keys_.forget_run(id);
-  // Its thread may still hold it.
-  runs_.erase(id);
+  // Its thread may still hold it, and not have put its timeline on the shelf yet.
+  if (const auto run = runs_.find(id); run != runs_.end()) {
+    tell_deleted(*run->second->timeline);
+    runs_.erase(run);
+  }
   std::erase_if(unflown_, [&](const auto& run) { return run->id == id; });
 }
 

@@ -25,10 +25,10 @@ bool is_live(const RunTimeline& timeline) {
 }
 
 void set_status(RunTimeline& timeline, RunStatus status, const std::string& error) {
-  RunInfo info = timeline.info();
-  info.status = status;
-  info.error = error;
-  timeline.set_info(info);
+  timeline.change_info([&](RunInfo& info) {
+    info.status = status;
+    info.error = error;
+  });
 }
 
 Status ManagedRuns::start_threads() {
@@ -146,9 +146,7 @@ void ManagedRuns::fly(ManagedRun& run) {
   run_options.world_opened = set_world;
   run_options.notice = [&run](const std::string& text) {
     // The run's next update of its info clears it again.
-    RunInfo info = run.timeline->info();
-    info.notice = text;
-    run.timeline->set_info(info);
+    run.timeline->change_info([&](RunInfo& info) { info.notice = text; });
   };
   const Result<RunResult> result = run_scenario(run.scenario, run_options);
   set_world(nullptr);

@@ -13,14 +13,11 @@ namespace {
 /// How long a timeline of a run that another process writes is kept at least.
 constexpr std::chrono::seconds kShortestFresh{1};
 
-/// For its viewers, who keep what was read.
-void tell_deleted(RunTimeline& timeline) {
-  RunInfo info = timeline.info();
-  info.problem = "the run was deleted";
-  timeline.set_info(info);
-}
-
 }  // namespace
+
+void tell_deleted(RunTimeline& timeline) {
+  timeline.change_info([](RunInfo& info) { info.problem = "the run was deleted"; });
+}
 
 TimelineShelf::Entry TimelineShelf::entry_of(const std::string& id) const {
   Entry entry;
@@ -79,8 +76,7 @@ Result<std::shared_ptr<RunTimeline>> TimelineShelf::get(const std::string& id) {
     const auto end = std::chrono::steady_clock::now();
     entry.fresh_until = end + kShortestFresh + 4 * (end - begin);
   }
-  keep(std::move(entry));
-  return opened;
+  return kept(std::move(entry));
 }
 
 void TimelineShelf::put(const std::string& id, std::shared_ptr<RunTimeline> timeline) {
@@ -88,6 +84,20 @@ void TimelineShelf::put(const std::string& id, std::shared_ptr<RunTimeline> time
   entry.id = id;
   entry.timeline = std::move(timeline);
   keep(std::move(entry));
+}
+
+std::shared_ptr<RunTimeline> TimelineShelf::kept(Entry entry) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
+      return other.id == entry.id && !other.fresh_until &&
+             other.timeline->manifest_stamp() == entry.timeline->manifest_stamp();
+    });
+    if (found != entries_.end()) return found->timeline;
+  }
+  std::shared_ptr<RunTimeline> timeline = entry.timeline;
+  keep(std::move(entry));
+  return timeline;
 }
 
 void TimelineShelf::keep(Entry entry) {

@@ -17,6 +17,9 @@
 
 namespace overfly::server {
 
+/// For the viewers of a run, who keep what was read.
+void tell_deleted(RunTimeline& timeline);
+
 /// Thread-safe. Keeps the most recently used ones, and those that somebody else holds.
 class TimelineShelf {
  public:
@@ -47,6 +50,9 @@ class TimelineShelf {
   /// False if the entry's folder no longer exists. @pre mutex_ is held
   bool is_fresh(Entry& entry) const;
   void keep(Entry entry);
+  /// Keeps a timeline that was read, or gives the one that another thread has read meanwhile: only
+  /// viewers of what is kept are notified.
+  [[nodiscard]] std::shared_ptr<RunTimeline> kept(Entry entry);
 
   const RunPlaces places_;
   std::mutex mutex_;

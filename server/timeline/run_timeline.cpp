@@ -196,9 +196,13 @@ void RunTimeline::set_manifest_stamp(const FileStamp& stamp) {
 }
 
 void RunTimeline::set_info(const RunInfo& info) {
+  change_info([&](RunInfo& changed) { changed = info; });
+}
+
+void RunTimeline::change_info(const std::function<void(RunInfo&)>& change) {
   const std::lock_guard lock(mutex_);
-  info_ = info;
-  const bool live = info.status == RunStatus::kQueued || info.status == RunStatus::kRunning;
+  change(info_);
+  const bool live = info_.status == RunStatus::kQueued || info_.status == RunStatus::kRunning;
   if (!live) {
     // Pictures of a run that is over are read from its folder or rendered again.
     for (CameraRows& camera : cameras_) camera.live.reset();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -97,6 +98,8 @@ class RunTimeline {
   void set_cameras(std::vector<RunCamera> cameras);
   void set_manifest_stamp(const FileStamp& stamp);
   void set_info(const RunInfo& info);
+  /// Changes parts of it, while no other thread does: `change` must not use the timeline.
+  void change_info(const std::function<void(RunInfo&)>& change);
   void append_frame(const FrameRow& row, std::size_t camera = kMainCamera);
   /// @param counters  of the answer, by name; at most kMaxCounters different ones are kept
   void append_estimate(std::size_t estimator,
