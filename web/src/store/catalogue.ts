@@ -20,6 +20,10 @@ export class Catalogue {
   /** Ids of the runs that were over in the last list; the stream changes those of the state. */
   private over: ReadonlySet<string> = new Set();
   private reading: Promise<void> = Promise.resolve();
+  /** Number of the latest choice in the launcher: a scenario, or a run that is flown again. */
+  private choice = 0;
+  /** Number of the latest choice of a scenario. */
+  private selection = 0;
 
   constructor(
     private readonly store: Store,
@@ -63,6 +67,11 @@ export class Catalogue {
 
   async selectScenario(name: string): Promise<void> {
     const { state } = this.store;
+    const selection = ++this.choice;
+    this.selection = selection;
+    // A run that is flown again replaces it once its scenario is read, not if that fails.
+    const isCurrent = () =>
+      this.selection === selection && state.scenarioName === name && state.repeatedRun === null;
     state.scenarioName = name;
     state.repeatedRun = null;
     state.scenarioDocument = null;
@@ -76,9 +85,10 @@ export class Catalogue {
     }
     try {
       const document = await this.rest.scenario(name);
-      const { repeatedRun, scenarioName } = this.store.state;
-      if (scenarioName === name && repeatedRun === null) state.scenarioDocument = document;
+      if (!isCurrent()) return;
+      state.scenarioDocument = document;
     } catch (error) {
+      if (!isCurrent()) return;
       state.launchErrors = [{ field: '', message: errorText(error) }];
     }
     this.store.change('launch');
@@ -87,13 +97,15 @@ export class Catalogue {
   /** Shows in the form what a run flew, to fly it again with changes. */
   async repeat(run: Run): Promise<void> {
     const { state } = this.store;
+    const choice = ++this.choice;
     let document: JsonObject;
     try {
       document = await this.rest.runScenario(run.id);
     } catch (error) {
-      this.notices.error(errorText(error));
+      if (this.choice === choice) this.notices.error(errorText(error));
       return;
     }
+    if (this.choice !== choice) return;
     // Pages that need a scenario's name go on with the same one.
     if (state.scenarios?.some(({ name }) => name === run.scenario) === true) {
       state.scenarioName = run.scenario;
