@@ -7,10 +7,10 @@ import type { Notices } from '../notices';
 import { draftOf } from '../scenario/draft';
 import type { Store } from '../state';
 import type { CalibrationForm } from './calibration_form';
-import { lensOf, requestOf } from './calibration_form';
+import { camerasOf, lensOf, requestOf } from './calibration_form';
 import type { CalibrationPage } from './calibration_page';
 import { chooseFirst } from './calibration_page';
-import { calibratedSection, leftOutBy } from './calibration_results';
+import { calibratedSection, leftOutBy, sameViews } from './calibration_results';
 import type { Later } from './image_sender';
 import { ImageSender } from './image_sender';
 
@@ -30,6 +30,9 @@ export interface SectionTaker {
 export class CalibrationDesk {
   /** Increases when a session is begun or left: answers about the one before are dropped. */
   private generation = 0;
+  /** Numbers of the latest requests for the lists, and for what is saved. */
+  private listing = 0;
+  private readingSaved = 0;
   private polling = false;
   /** Ends when the last estimate that was asked for is agreed to or refused. */
   private asking: Promise<void> = Promise.resolve();
@@ -67,16 +70,25 @@ export class CalibrationDesk {
 
   async readLists(): Promise<void> {
     const { page } = this;
+    const number = ++this.listing;
     try {
-      const [sources, saved] = await Promise.all([this.client.sources(), this.client.saved()]);
+      const [sources] = await Promise.all([this.client.sources(), this.readSaved()]);
+      if (number !== this.listing) return;
       page.sources = sources;
-      page.saved = saved;
       page.listError = null;
       chooseFirst(page);
     } catch (error) {
+      if (number !== this.listing) return;
       page.listError = errorText(error);
     }
     this.changed();
+  }
+
+  /** A later answer is newer, whichever comes first. */
+  private async readSaved(): Promise<void> {
+    const number = ++this.readingSaved;
+    const saved = await this.client.saved();
+    if (number === this.readingSaved) this.page.saved = saved;
   }
 
   /** Changes the form. */
@@ -162,7 +174,7 @@ export class CalibrationDesk {
     if (session === null) return;
     await this.request(async () => {
       await this.client.save(session.id, name);
-      page.saved = await this.client.saved();
+      await this.readSaved();
       this.notices.info(`Saved as ${name}.`);
     });
   }
@@ -170,7 +182,7 @@ export class CalibrationDesk {
   async remove(name: string): Promise<void> {
     await this.request(async () => {
       await this.client.remove(name);
-      this.page.saved = await this.client.saved();
+      await this.readSaved();
     });
   }
 
@@ -294,16 +306,23 @@ export class CalibrationDesk {
       if (this.generation !== generation) return;
       if (session !== null) this.show(session);
       await this.readSolution();
+      this.notePolled(null);
     } catch (error) {
       if (this.generation !== generation) return;
       if (error instanceof RestError && error.status === 404) {
         this.forget();
         page.error = 'The calibration was closed by the server.';
+        this.changed();
       } else {
-        page.error = errorText(error);
+        this.notePolled(errorText(error));
       }
-      this.changed();
     }
+  }
+
+  private notePolled(error: string | null): void {
+    if (this.page.pollError === error) return;
+    this.page.pollError = error;
+    this.changed();
   }
 
   private async readSolution(): Promise<void> {
@@ -352,6 +371,7 @@ export class CalibrationDesk {
       selected: null,
       detail: null,
       sending: null,
+      pollError: null,
     });
     this.changed();
   }
@@ -377,21 +397,4 @@ export class CalibrationDesk {
   private changed(): void {
     this.store.change('calibration');
   }
-}
-
-function sameViews(some: ReadonlySet<number>, others: ReadonlySet<number>): boolean {
-  return some.size === others.size && [...some].every((view) => others.has(view));
-}
-
-/** Names of a scenario's cameras, the main one first. */
-export function camerasOf(document: JsonObject): string[] {
-  const several = document['cameras'];
-  const cameras = Array.isArray(several) ? several : [document['camera'] ?? {}];
-  return cameras.map((camera) => {
-    const name =
-      typeof camera === 'object' && camera !== null && !Array.isArray(camera)
-        ? camera['name']
-        : undefined;
-    return typeof name === 'string' ? name : 'camera0';
-  });
 }

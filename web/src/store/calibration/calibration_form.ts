@@ -5,6 +5,7 @@ import type {
   SessionRequest,
   SourceRequest,
 } from '../../protocol/calibration_types';
+import type { JsonObject } from '../../protocol/rest_types';
 
 export const kSourceKinds = ['scenario', 'folder', 'upload', 'recording', 'camera'] as const;
 export type SourceKind = (typeof kSourceKinds)[number];
@@ -126,4 +127,17 @@ function boardOf(form: CalibrationForm): Checked<BoardRequest> {
     return { error: 'Marker: must be 0.3 to 0.9 of the square.' };
   }
   return { value: { cols, rows, square_m, markers: form.board, marker_m } };
+}
+
+/** Names of a scenario's cameras, the main one first. */
+export function camerasOf(document: JsonObject): string[] {
+  const several = document['cameras'];
+  const cameras = Array.isArray(several) ? several : [document['camera'] ?? {}];
+  return cameras.map((camera) => {
+    const name =
+      typeof camera === 'object' && camera !== null && !Array.isArray(camera)
+        ? camera['name']
+        : undefined;
+    return typeof name === 'string' ? name : 'camera0';
+  });
 }

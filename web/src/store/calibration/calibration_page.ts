@@ -21,6 +21,8 @@ export interface CalibrationPage {
   /** A request is on its way. */
   busy: boolean;
   error: string | null;
+  /** Why the session cannot be followed; null again once it can. */
+  pollError: string | null;
   session: CalibrationSession | null;
   solution: CalibrationSolution | null;
   /** Views without which an estimate was asked for; null = those that the session leaves out. */
@@ -44,6 +46,7 @@ export function initialCalibrationPage(): CalibrationPage {
     form: initialForm(),
     busy: false,
     error: null,
+    pollError: null,
     session: null,
     solution: null,
     leftOut: null,

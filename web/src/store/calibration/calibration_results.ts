@@ -146,3 +146,7 @@ function withFile(camera: Json, file: string): JsonObject {
   const kept = Object.entries(fields).filter(([name]) => !kOwnFields.includes(name));
   return { calibration: file, ...Object.fromEntries(kept) };
 }
+
+export function sameViews(some: ReadonlySet<number>, others: ReadonlySet<number>): boolean {
+  return some.size === others.size && [...some].every((view) => others.has(view));
+}

@@ -1,5 +1,6 @@
 // A picture of the board with the corners that were found, and the residuals of an estimate.
 import type { Corner, SearchedImage } from '../../protocol/calibration_types';
+import { NewestLoader } from '../../store/calibration/newest_loader';
 import { h, setText } from '../dom';
 
 /** Residuals are a fraction of a pixel: they are drawn longer by this factor. */
@@ -26,6 +27,11 @@ export class BoardPicture {
   private key = '';
   private content: BoardPictureContent | null = null;
   private picture: HTMLImageElement | null = null;
+  /** The picture before stays until the next one is there, so that nothing flickers. */
+  private readonly loader = new NewestLoader(
+    ({ url }: BoardPictureContent) => decoded(url),
+    (content, picture) => this.take(content, picture),
+  );
 
   constructor(
     label: string,
@@ -48,27 +54,16 @@ export class BoardPicture {
     this.key = key;
     this.root.dataset['image'] = image === undefined ? '' : String(image.number);
     if (content === null || !content.image.picture) {
-      this.content = content;
-      this.picture = null;
-      this.finish();
+      this.loader.clear();
+      this.take(content, null);
       return;
     }
-    // The picture before stays until this one is there, so that nothing flickers.
-    const next = new Image();
-    next.src = content.url;
-    next
-      .decode()
-      .then(() => {
-        if (this.key !== key) return;
-        this.content = content;
-        this.picture = next;
-        this.finish();
-      })
-      .catch(() => undefined);
+    this.loader.want(content);
   }
 
-  private finish(): void {
-    const { content } = this;
+  private take(content: BoardPictureContent | null, picture: HTMLImageElement | null): void {
+    this.content = content;
+    this.picture = picture;
     setText(this.caption, content?.caption ?? '');
     const { width_px, height_px } = content?.image ?? { width_px: 0, height_px: 0 };
     if (width_px > 0) this.root.style.setProperty('--aspect', `${width_px / height_px}`);
@@ -100,6 +95,13 @@ export class BoardPicture {
     drawCorners(pen, content, place, ratio);
     if (content.residuals !== null) drawResiduals(pen, content, place, scale, ratio);
   }
+}
+
+async function decoded(url: string): Promise<HTMLImageElement> {
+  const image = new Image();
+  image.src = url;
+  await image.decode();
+  return image;
 }
 
 function drawCorners(

@@ -108,7 +108,8 @@ export class CaptureView {
   update(): void {
     const page = this.context.store.state.calibrationPage;
     const { session } = page;
-    setText(this.error, page.error ?? session?.error ?? session?.solve_error ?? '');
+    const errors = [page.error, session?.error, session?.solve_error, page.pollError];
+    setText(this.error, errors.find((error) => typeof error === 'string') ?? '');
     this.error.hidden = this.error.textContent === '';
     this.updateTools(page);
     this.bars.show(session?.coverage ?? []);

@@ -4,7 +4,7 @@ import { CalibrationClient } from '../../../src/connection/calibration_client';
 import { RestClient } from '../../../src/connection/rest_client';
 
 import type { CalibrationSession } from '../../../src/protocol/calibration_types';
-import { CalibrationDesk, camerasOf } from '../../../src/store/calibration/calibration_desk';
+import { CalibrationDesk } from '../../../src/store/calibration/calibration_desk';
 import { Notices } from '../../../src/store/notices';
 import { ScenarioDesk } from '../../../src/store/scenario/scenario_desk';
 import { Store } from '../../../src/store/state';
@@ -19,12 +19,18 @@ interface Asked {
 let store: Store;
 let asked: Asked[];
 let session: CalibrationSession | null;
+/** Names of saved calibrations. */
+let saved: string[];
 let later: (() => void)[];
 /** Of the launcher's scenario, which wait for a pause. */
 let checks: (() => void)[];
 let refusals: number;
 /** Estimates of fewer views are refused. */
 let leastViews: number;
+/** The server is away. */
+let away: boolean;
+/** The list of what is saved comes when these are called. */
+let held: (() => void)[] | null;
 let desk: CalibrationDesk;
 
 const refusal = (status: number, code: string) =>
@@ -36,7 +42,9 @@ function answer(method: string, url: string, body: unknown): Response {
     const sources = { folders, recordings: [], cameras: [], keeps: true, complete: true };
     return Response.json(sources);
   }
-  if (url === 'api/calibrations' && method === 'GET') return Response.json({ calibrations: [] });
+  if (url === 'api/calibrations' && method === 'GET') {
+    return Response.json({ calibrations: saved.map((name) => ({ name })) });
+  }
   if (url === 'api/calibrations') return Response.json({ name: 'c', file: '/c.json' });
   if (url.startsWith('api/scenarios/')) return Response.json({ cameras: [{ name: 'down' }] });
   if (url === 'api/calibration-sessions' && method === 'GET') {
@@ -45,6 +53,9 @@ function answer(method: string, url: string, body: unknown): Response {
   if (url === 'api/calibration-sessions') {
     session = sampleSession();
     return Response.json(session, { status: 201 });
+  }
+  if (url.startsWith('api/calibrations/') && method === 'DELETE') {
+    return new Response(null, { status: 204 });
   }
   if (url.startsWith('api/calibrations/')) {
     return url.endsWith('=dso') ? refusal(422, 'k3 must be 0') : new Response('fx_px: 500');
@@ -74,15 +85,24 @@ beforeEach(() => {
   store.state.scenarioName = 'course';
   asked = [];
   session = null;
+  saved = [];
   later = [];
   checks = [];
   refusals = 0;
   leastViews = 0;
+  away = false;
+  held = null;
   const rest = new RestClient('api', (url, init) => {
     const method = init?.method ?? 'GET';
     const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
     asked.push({ method, url, body });
-    return Promise.resolve(answer(method, url, body));
+    if (away) return Promise.reject(new TypeError('refused'));
+    const response = answer(method, url, body);
+    if (held === null || url !== 'api/calibrations' || method !== 'GET') {
+      return Promise.resolve(response);
+    }
+    const wait = held;
+    return new Promise((resolve) => wait.push(() => resolve(response)));
   });
   const wait = (callback: () => void) => later.push(callback);
   const notices = new Notices(store, () => 0);
@@ -265,6 +285,40 @@ describe('CalibrationDesk', () => {
     expect(page().error).toContain('closed');
   });
 
+  it('shows a lost connection until the session is followed again, and hides no other error', async () => {
+    await desk.open();
+    await desk.begin();
+    await settle();
+    away = true;
+    await turn();
+    expect(page()).toMatchObject({ error: null, pollError: 'the server does not answer' });
+    away = false;
+    await turn();
+    expect(page().pollError).toBeNull();
+    away = true;
+    await turn();
+    expect(page().pollError).not.toBeNull();
+    away = false;
+    await desk.end();
+    expect(page().pollError).toBeNull();
+  });
+
+  it('keeps the newest list of what is saved, whichever answer comes first', async () => {
+    saved = ['old'];
+    held = [];
+    const first = desk.readLists();
+    saved = [];
+    const second = desk.remove('old');
+    await settle();
+    const [older, newer] = held;
+    newer?.();
+    await second;
+    older?.();
+    await first;
+    expect(page().saved).toEqual([]);
+    expect(page().sources).not.toBeNull();
+  });
+
   it('saves the result and uses it in the next flight', async () => {
     await desk.open();
     await desk.begin();
@@ -300,13 +354,5 @@ describe('CalibrationDesk', () => {
     expect(state.notices.map(({ level, text }) => `${level}: ${text}`)).toEqual([
       expect.stringMatching(/^error: Correct the scenario first: camera is not JSON/u),
     ]);
-  });
-});
-
-describe('camerasOf', () => {
-  it('names the cameras of a scenario', () => {
-    expect(camerasOf({ camera: { name: 'a' } })).toEqual(['a']);
-    expect(camerasOf({ cameras: [{ name: 'a' }, { name: 'b' }] })).toEqual(['a', 'b']);
-    expect(camerasOf({})).toEqual(['camera0']);
   });
 });

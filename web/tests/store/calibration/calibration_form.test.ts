@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import {
   ambiguityOf,
+  camerasOf,
   initialForm,
   lensOf,
   requestOf,
@@ -72,5 +73,13 @@ describe('lensOf', () => {
   it('has k3 only with radtan', () => {
     expect(lensOf(form({ model: 'radtan', k3: true }))).toEqual({ model: 'radtan', k3: true });
     expect(lensOf(form({ model: 'equidistant', k3: true })).k3).toBe(false);
+  });
+});
+
+describe('camerasOf', () => {
+  it('names the cameras of a scenario', () => {
+    expect(camerasOf({ camera: { name: 'a' } })).toEqual(['a']);
+    expect(camerasOf({ cameras: [{ name: 'a' }, { name: 'b' }] })).toEqual(['a', 'b']);
+    expect(camerasOf({})).toEqual(['camera0']);
   });
 });
