@@ -33,6 +33,8 @@ export interface ChoiceGroup {
 
 export class ScoreDesk {
   private scoring = new AbortController();
+  /** Number of the latest request for the lists. */
+  private listing = 0;
 
   constructor(
     private readonly store: Store,
@@ -57,12 +59,16 @@ export class ScoreDesk {
 
   async readLists(): Promise<void> {
     const { page } = this;
+    const number = ++this.listing;
     try {
       const [files, logs] = await Promise.all([this.rest.trajectories(), this.rest.logs()]);
+      // A later answer is newer, whichever comes first.
+      if (number !== this.listing) return;
       page.files = files;
       page.logs = logs.logs;
       page.listError = null;
     } catch (error) {
+      if (number !== this.listing) return;
       page.listError = errorText(error);
     }
     this.changed();

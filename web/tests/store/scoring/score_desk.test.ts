@@ -16,6 +16,10 @@ let failing: string | null;
 let undeletable: boolean;
 /** Scores come when these are called. */
 let held: (() => void)[] | null;
+/** The lists of files come when these are called. */
+let heldLists: (() => void)[] | null;
+/** Files of the server. */
+let files: string[];
 let desk: ScoreDesk;
 
 beforeEach(() => {
@@ -24,6 +28,8 @@ beforeEach(() => {
   failing = null;
   undeletable = false;
   held = null;
+  heldLists = null;
+  files = ['file:d/a/t.tum'];
   const rest = new RestClient('api', (url, init) => {
     const body: unknown = typeof init?.body === 'string' ? JSON.parse(init.body) : null;
     asked.push({ url, body });
@@ -33,8 +39,11 @@ beforeEach(() => {
     }
     if (url === 'api/trajectories') {
       const entry = { format: 'TUM', folder: 'd', size_bytes: 9, uploaded: false };
-      const trajectories = [{ name: 'file:d/a/t.tum', ...entry }];
-      return Promise.resolve(Response.json({ trajectories, complete: true }));
+      const trajectories = files.map((name) => ({ name, ...entry }));
+      const list = Response.json({ trajectories, complete: true });
+      if (heldLists === null) return Promise.resolve(list);
+      const wait = heldLists;
+      return new Promise((resolve) => wait.push(() => resolve(list)));
     }
     if (url === 'api/logs') {
       return Promise.resolve(
@@ -143,6 +152,19 @@ describe('ScoreDesk', () => {
     desk.close();
     await desk.open();
     expect(evaluations()).toHaveLength(3);
+  });
+
+  it('keeps the newest lists, whichever answer comes first', async () => {
+    heldLists = [];
+    const before = desk.readLists();
+    files = [];
+    const after = desk.readLists();
+    const [older, newer] = heldLists;
+    newer?.();
+    await after;
+    older?.();
+    await before;
+    expect(store.state.scorePage.files?.trajectories).toEqual([]);
   });
 
   it('says why a file could not be deleted, and keeps it chosen', async () => {
