@@ -25,6 +25,8 @@ const kPoll_ms = 400;
 
 export class LogSmoothing {
   private working = new AbortController();
+  /** The log of the last request. */
+  private log: string | null = null;
 
   constructor(
     private readonly store: Store,
@@ -56,6 +58,7 @@ export class LogSmoothing {
   refresh(): void {
     const { state, page } = this;
     const name = page.chosen;
+    if (name !== this.log) this.forget(name);
     const wanted = page.open && state.open && name !== null && page.info !== null;
     if (!wanted) {
       if (state.progress === null) return;
@@ -79,6 +82,15 @@ export class LogSmoothing {
     });
     this.changed();
     void this.work(name, working);
+  }
+
+  /** Drops what belongs to the log before. */
+  private forget(log: string | null): void {
+    this.log = log;
+    if (this.state.key === '') return;
+    this.working.abort();
+    Object.assign(this.state, { key: '', progress: null, residuals: null, error: null });
+    this.changed();
   }
 
   private async work(name: string, working: AbortController): Promise<void> {

@@ -1,6 +1,6 @@
 // What smoothing leaves of a log's samples: curves of those that were used, dots of the others.
 import type { LogInfo, LogResiduals, LogSeries, ResidualTable } from '../../protocol/log_types';
-import { modeBands } from '../../store/logs/log_bands';
+import { eventsOf, modeBands } from '../../store/logs/log_bands';
 import { broken } from '../../store/logs/log_track';
 import type { LogSmoothingState } from '../../store/logs/log_smoothing';
 import { h, rebuild, setText } from '../dom';
@@ -55,7 +55,10 @@ export class LogResidualsView {
   private readonly problem = h('span', {});
   private readonly failed: HTMLElement;
   private span_s: readonly [number, number] = [0, 1];
-  private shown: LogResiduals | null = null;
+  private shown: { residuals: LogResiduals | null; series: LogSeries | null } = {
+    residuals: null,
+    series: null,
+  };
 
   constructor(actions: ResidualActions) {
     this.plots = kPlots.map(
@@ -107,11 +110,12 @@ export class LogResidualsView {
     }
     this.failed.hidden = error === null;
     setText(this.problem, error ?? '');
-    if (residuals === this.shown) return;
-    this.shown = residuals;
+    if (residuals === this.shown.residuals && series === this.shown.series) return;
+    this.shown = { residuals, series };
     const times = series?.positions['t_s'] ?? [];
     this.span_s = spanOf(residuals) ?? [times[0] ?? 0, times.at(-1) ?? 1];
-    const bands = info === null ? [] : modeBands(info.events, this.span_s[1]);
+    const events = info === null || series === null ? [] : eventsOf(info.events, series);
+    const bands = modeBands(events, this.span_s[1]);
     kPlots.forEach(({ key, columns }, i) => {
       const fit = residuals?.[key];
       const used = fit?.used ?? {};

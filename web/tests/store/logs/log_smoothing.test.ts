@@ -77,6 +77,27 @@ describe('LogSmoothing', () => {
     expect(asked).toHaveLength(3);
   });
 
+  it('drops the residuals when another log is chosen, or none, but not when it is hidden', async () => {
+    const residuals = { jump_count: 0 };
+    smoothing.show(true);
+    answers[0]?.(Response.json(residuals));
+    await settle();
+    smoothing.show(false);
+    smoothing.show(true);
+    expect(state().residuals).toEqual(residuals);
+    Object.assign(store.state.logPage, { chosen: 'logs/b.bin', info: null });
+    smoothing.refresh();
+    expect(state().residuals).toBeNull();
+    store.state.logPage.info = kInfo;
+    smoothing.refresh();
+    expect(asked).toHaveLength(2);
+    answers[1]?.(Response.json(residuals));
+    await settle();
+    Object.assign(store.state.logPage, { chosen: null, info: null });
+    smoothing.refresh();
+    expect(state()).toMatchObject({ residuals: null, error: null, progress: null });
+  });
+
   it('is cancelled by the viewer, and begun again', async () => {
     smoothing.show(true);
     smoothing.cancel();
