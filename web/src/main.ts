@@ -107,7 +107,7 @@ const catalogue = new Catalogue(store, rest, session, notices, later, newKey);
 const scenarios = new ScenarioDesk(store, rest, catalogue, notices, later);
 
 const alignment = new Alignment(store, rest, session, notices);
-const cameras = new Cameras(store, rest);
+const cameras = new Cameras(store, rest, later);
 const probe = new PixelProbe(store, rest, later);
 const reports = new ReportMaker(store, rest, notices);
 const sensors = new Sensors(store, rest, { now_ms: () => performance.now(), later });

@@ -14,6 +14,14 @@ export class RestError extends Error {
   }
 }
 
+const kAwayOrBusy: ReadonlySet<number> = new Set([0, 429, 502, 503, 504]);
+
+/** Whether the server was away or busy, so that the same request may succeed later. */
+export function isPassing(error: unknown): boolean {
+  // What takes too long once takes too long again.
+  return error instanceof RestError && kAwayOrBusy.has(error.status) && error.code !== 'timeout';
+}
+
 /** Of what was thrown, for people. */
 export function errorText(error: unknown): string {
   return error instanceof Error ? error.message : String(error);

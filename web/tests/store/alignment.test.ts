@@ -156,7 +156,7 @@ describe('Alignment', () => {
 describe('Cameras', () => {
   it('are read once a run has frames', async () => {
     answer = () => Response.json({ cameras: [{ name: 'front', width_px: 64, height_px: 48 }] });
-    const cameras = new Cameras(viewing.store, rest());
+    const cameras = new Cameras(viewing.store, rest(), () => undefined);
     viewing.socket.receive(playbackMessage({ frame: -1 }));
     await cameras.refresh();
     expect(asked).toEqual([]);

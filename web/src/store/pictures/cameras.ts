@@ -1,14 +1,18 @@
 // The cameras of the watched runs, read from their manifests.
 import type { RestClient } from '../../connection/rest_client';
+import { isPassing } from '../../connection/rest_error';
 import type { Store } from '../state';
 import type { WatchedRun } from '../watched_run';
+
+const kRetry_ms = 5000;
 
 export class Cameras {
   private readonly asked = new WeakSet<WatchedRun>();
 
   constructor(
     private readonly store: Store,
-    private readonly rest: RestClient,
+    private readonly rest: Pick<RestClient, 'manifest'>,
+    private readonly later: (callback: () => void, delay_ms: number) => void,
   ) {}
 
   /** Reads them once per run. */
@@ -30,8 +34,14 @@ export class Cameras {
         ),
       );
       this.store.change('cameras');
-    } catch {
+    } catch (error) {
       // Without a manifest the run has one unnamed camera, whose pictures still arrive.
+      if (isPassing(error)) this.later(() => this.readAgain(watched), kRetry_ms);
     }
+  }
+
+  private readAgain(watched: WatchedRun): void {
+    this.asked.delete(watched);
+    void this.refresh();
   }
 }

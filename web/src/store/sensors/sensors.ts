@@ -1,5 +1,5 @@
 // Samples of the watched run's sensors: read while they are shown, and again as the run goes on.
-import { errorText } from '../../connection/rest_error';
+import { errorText, isPassing } from '../../connection/rest_error';
 import type { RestClient } from '../../connection/rest_client';
 import type { SensorCurves } from '../../protocol/sensor_types';
 import { isActive } from '../../protocol/rest_types';
@@ -90,6 +90,7 @@ export class Sensors {
     this.reading = reading;
     const begin_ms = this.timers.now_ms();
     const { state } = this.store;
+    let again = active;
     try {
       const sensors = await this.rest.sensors(
         wanted.run,
@@ -105,10 +106,11 @@ export class Sensors {
     } catch (error) {
       if (reading.signal.aborted) return;
       state.sensorError = errorText(error);
+      again ||= isPassing(error);
     }
     this.store.change('sensors');
     const took_ms = this.timers.now_ms() - begin_ms;
-    if (active && wish === this.wish) this.readLater(Math.max(kRefresh_ms, kRest * took_ms));
+    if (again && wish === this.wish) this.readLater(Math.max(kRefresh_ms, kRest * took_ms));
   }
 
   private isActive(id: string): boolean {

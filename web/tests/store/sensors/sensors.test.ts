@@ -107,5 +107,19 @@ describe('Sensors', () => {
     sensors.show('r1', null);
     await settle();
     expect(viewing.store.state.sensorError).toBe('imu.csv:3');
+    expect(waiting).toEqual([]);
+  });
+
+  it('reads a finished flight again if the server was away', async () => {
+    answer = () => Promise.reject(new TypeError('refused'));
+    sensors.show('r1', null);
+    await settle();
+    expect(viewing.store.state.sensorError).toBe('the server does not answer');
+    answer = () => Promise.resolve(Response.json(kAnswer));
+    fire();
+    await settle();
+    expect(viewing.store.state.sensorError).toBeNull();
+    expect(viewing.store.state.sensors?.newest_s).toBe(1.5);
+    expect(waiting).toEqual([]);
   });
 });
