@@ -253,6 +253,10 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
   });
 
   step('opens several missions, also those of the server', async () => {
+    // What was imported is not saved: it is replaced by the second choice.
+    await field('mission-open').selectOption('airfield_mission');
+    await page.locator('[data-role=mission-notes]', { hasText: 'choose again to replace it' }).waitFor();
+    await untilItems(6);
     await field('mission-open').selectOption('airfield_mission');
     await dashboard.until(() => document.querySelector('#mission-title').value === 'A mission over the built-in airfield');
     assert.equal((await titles()).at(-1), 'Landing');

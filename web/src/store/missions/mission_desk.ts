@@ -14,7 +14,7 @@ import {
   kUsualFlight,
   missionDocument,
 } from './mission_document';
-import { readDraft, writeDraft } from './mission_draft';
+import { drawnText, readDraft, writeDraft } from './mission_draft';
 import { movedTo } from './mission_edit';
 import { MissionEditor } from './mission_editor';
 import type { MissionFile, MissionFormat, ReadableFile } from './mission_exchange';
@@ -31,6 +31,8 @@ const kUsualWorld = 'builtin:1';
 export class MissionDesk extends MissionEditor {
   /** Counts the choices of a scenario: late answers about the one before are dropped. */
   private choices = 0;
+  /** What is drawn, as the server had it when the mission was opened or saved; null = never. */
+  private kept: string | null = null;
   private readonly worlds: MissionWorlds;
   private readonly reporter: MissionReporter;
 
@@ -56,18 +58,21 @@ export class MissionDesk extends MissionEditor {
   }
 
   async open(): Promise<void> {
-    this.store.state.openPage(this.page);
+    const { page } = this;
+    this.store.state.openPage(page);
+    // Before the first wait, so that nothing that is chosen meanwhile replaces it unasked.
+    if (page.draft === null && !page.working) page.draft = readDraft(this.storage, this.newId);
     this.changed();
     await this.worlds.read();
-    // A mission may have been chosen meanwhile.
-    if (this.page.draft !== null || this.page.working) {
-      this.reporter.schedule();
-      return;
-    }
-    const draft = readDraft(this.storage, this.newId);
-    if (draft === null) await this.startNew();
-    else await this.show(draft);
+    if (!page.working) await this.openRest();
     this.reporter.schedule();
+  }
+
+  /** Opens what is missing: a mission, or its world if the server was away before. */
+  private async openRest(): Promise<void> {
+    const { draft, world, making } = this.page;
+    if (draft === null) await this.startNew();
+    else if (world === null && making === null) await this.worlds.open(draft.world);
   }
 
   close(): void {
@@ -162,6 +167,7 @@ export class MissionDesk extends MissionEditor {
       const read = this.placeAsFlown(draft, document);
       this.page.notes = notFlown(mission);
       this.page.savedText = own ? JSON.stringify(this.documentOf(read)) : null;
+      this.kept = drawnText(read);
     });
   }
 
@@ -229,6 +235,7 @@ export class MissionDesk extends MissionEditor {
     page.notes = [];
     page.camera = '';
     page.savedText = null;
+    this.kept = drawnText(draft);
     this.history.clear();
     this.noteUndo();
     if (page.world?.name !== draft.world) await this.worlds.open(draft.world);
@@ -273,6 +280,12 @@ export class MissionDesk extends MissionEditor {
     return this.page.savedText !== this.draftText();
   }
 
+  /** Whether it would be lost if another mission was opened. */
+  get isUnsaved(): boolean {
+    const { draft } = this.page;
+    return draft !== null && draft.mission.items.length > 0 && drawnText(draft) !== this.kept;
+  }
+
   private draftText(): string {
     return JSON.stringify(this.document());
   }
@@ -295,6 +308,7 @@ export class MissionDesk extends MissionEditor {
       if (page.draft !== null && page.opened === opened) {
         page.draft = { ...page.draft, name, title: titled(page.draft.title) };
         page.savedText = JSON.stringify(sent);
+        this.kept = drawnText({ ...draft, title: titled(draft.title) });
         page.notes = [`Saved as ${name}.`];
       }
       await this.onScenarios();
@@ -310,6 +324,7 @@ export class MissionDesk extends MissionEditor {
       if (draft?.name === name) {
         this.page.draft = { ...draft, name: null };
         this.page.savedText = null;
+        this.kept = null;
       }
       await this.onScenarios();
     });

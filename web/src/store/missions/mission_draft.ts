@@ -18,6 +18,11 @@ export function writeDraft(storage: Storage, draft: MissionDraft | null): void {
   }
 }
 
+/** What has been drawn, to be compared: not where it is saved. */
+export function drawnText({ title, base, world, flight, mission }: MissionDraft): string {
+  return JSON.stringify([title, base, world, flight, mission]);
+}
+
 /** null without a draft, or with one that cannot be read. */
 export function readDraft(storage: Storage, newId: NewId): MissionDraft | null {
   try {

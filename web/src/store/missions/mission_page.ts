@@ -23,6 +23,8 @@ export interface MissionPage {
   open: boolean;
   /** null until read. */
   worlds: WorldEntry[] | null;
+  /** Why the worlds could not be listed the last time. */
+  listError: string | null;
   /** The draft's world once it is open. */
   world: World | null;
   worldError: string | null;
@@ -67,6 +69,7 @@ export function initialMissionPage(): MissionPage {
   return {
     open: false,
     worlds: null,
+    listError: null,
     world: null,
     worldError: null,
     worldMissing: false,

@@ -1,12 +1,14 @@
 // Asks the server what a mission will be like, when its edits pause.
 import type { RestClient } from '../../connection/rest_client';
-import { fieldErrorsOf, RestError } from '../../connection/rest_error';
+import { fieldErrorsOf, isPassing, RestError } from '../../connection/rest_error';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Store } from '../state';
 import type { MissionPage } from './mission_page';
 
 const kPause_ms = 250;
 const kBusy_ms = 1500;
+/** While the server is away. */
+const kAway_ms = 3000;
 
 export class MissionReporter {
   private asking = new AbortController();
@@ -62,8 +64,12 @@ export class MissionReporter {
       if (!asking.signal.aborted) this.take({ report, errors: [] });
     } catch (error) {
       if (asking.signal.aborted) return;
-      if (error instanceof RestError && error.code === 'too_many_readers') this.askIn(kBusy_ms);
-      else this.take({ report: null, errors: fieldErrorsOf(error) });
+      if (error instanceof RestError && error.code === 'too_many_readers') {
+        this.askIn(kBusy_ms);
+        return;
+      }
+      this.take({ report: null, errors: fieldErrorsOf(error) });
+      if (isPassing(error)) this.askIn(kAway_ms);
     }
   }
 

@@ -20,8 +20,9 @@ export class MissionWorlds {
   async read(): Promise<void> {
     try {
       this.page.worlds = await this.rest.worlds();
+      this.page.listError = null;
     } catch (error) {
-      this.page.worldError = errorText(error);
+      this.page.listError = errorText(error);
     }
     this.changed();
   }

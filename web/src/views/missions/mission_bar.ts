@@ -1,4 +1,5 @@
 // The bar of the page of missions: title, files, save, fly.
+import { kNewMission, MissionChoice } from '../../store/missions/mission_choice';
 import type { MissionFile, MissionFormat } from '../../store/missions/mission_exchange';
 import type { MissionPage } from '../../store/missions/mission_page';
 import { h, rebuild, setText } from '../dom';
@@ -74,13 +75,15 @@ export class MissionBar {
   private confirming = false;
 
   constructor(private readonly context: Context) {
-    const { missions } = context;
+    const { missions, store } = context;
+    const choice = new MissionChoice(store, missions, (callback, delay_ms) => {
+      window.setTimeout(callback, delay_ms);
+    });
     this.title.addEventListener('input', () => missions.set({ title: this.title.value }, 'title'));
     this.opener.addEventListener('change', () => {
       const name = this.opener.value;
       this.opener.value = '';
-      if (name === '+') void missions.startNew();
-      else if (name !== '') void missions.openScenario(name);
+      if (name !== '') void choice.choose(name);
     });
     this.file.addEventListener('change', () => {
       const [file] = this.file.files ?? [];
@@ -144,7 +147,7 @@ export class MissionBar {
     );
     rebuild(this.opener, JSON.stringify(known), () => [
       h('option', { value: '' }, 'Open'),
-      h('option', { value: '+' }, 'New mission'),
+      h('option', { value: kNewMission }, 'New mission'),
       ...known.map(({ name, title, saved }) =>
         h('option', { value: name }, saved ? title : `${title} (server)`),
       ),

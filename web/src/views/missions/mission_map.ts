@@ -41,6 +41,7 @@ export class MissionMap {
   private worldKey = '';
   private drawn: MissionReport | null = null;
   private showsFootprints = true;
+  private placing = false;
 
   constructor(
     private readonly actions: MapActions,
@@ -86,6 +87,7 @@ export class MissionMap {
   }
 
   setPlacing(placing: boolean): void {
+    this.placing = placing;
     this.root.classList.toggle('placing', placing);
   }
 
@@ -194,7 +196,10 @@ export class MissionMap {
     )
       .on('mousemove', ({ latlng }: L.LeafletMouseEvent) => this.hoverPath(latlng))
       .on('mouseout', () => this.actions.onCursor(null))
-      .on('click', (event: L.LeafletMouseEvent) => L.DomEvent.stopPropagation(event))
+      .on('click', (event: L.LeafletMouseEvent) => {
+        // A click on the path selects nothing, but places an item there.
+        if (!this.placing) L.DomEvent.stopPropagation(event);
+      })
       .addTo(this.paths);
   }
 

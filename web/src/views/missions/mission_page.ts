@@ -191,15 +191,18 @@ export class MissionPageView implements View {
   private showMessage({
     worldMissing,
     worldError,
+    listError,
     making,
     world,
     draft,
     worlds,
   }: MissionPage): void {
     const { missions } = this.context;
+    // Without the list of worlds there is no scenario to be checked or flown.
+    const problem = worldError ?? (worlds === null ? listError : null);
     const state = JSON.stringify([
       worldMissing,
-      worldError,
+      problem,
       making === null ? null : Math.round(making * 100),
       world === null,
       missions.isElsewhere,
@@ -207,7 +210,7 @@ export class MissionPageView implements View {
       worlds === null,
     ]);
     rebuild(this.message, state, () => {
-      if (worldError !== null) return [h('p', {}, worldError)];
+      if (problem !== null) return [h('p', {}, problem)];
       if (making !== null)
         return [h('p', {}, `Making the built-in world: ${formatNumber(making * 100, 0)} %`)];
       if (worldMissing) {

@@ -1,7 +1,7 @@
 // What a mission is like along its way: heights over the terrain, bank, motion of the image,
 // overlap, texels. One axis, one cursor.
 import type { MissionSamples } from '../../protocol/mission_types';
-import { formatNumber } from '../../store/format';
+import { formatDuration, formatNumber } from '../../store/format';
 import { ticks, tickText } from '../../store/plots/path_frame';
 import { valueTicks } from '../../store/plots/value_ticks';
 import type { MissionLimits, MissionReport } from '../../protocol/mission_types';
@@ -223,13 +223,14 @@ const kEnds: Readonly<Record<MissionReport['end'], string>> = {
   time_limit: ', does not end',
 };
 
-function summary({ duration_s, distance_m, end, start }: MissionReport): string {
+/** What a mission is like as a whole. */
+export function summary({ duration_s, distance_m, end, start }: MissionReport): string {
   const begin =
     start === null || !start.enough
       ? ''
       : ` · straight and level from ${formatNumber(start.from_s, 0)} s, ${formatNumber(start.length_m, 0)} m long`;
-  const minutes = `${Math.floor(duration_s / 60)} min ${formatNumber(duration_s % 60, 0)} s`;
-  return `${formatNumber(distance_m / 1000, 2)} km, ${minutes}${kEnds[end]}${begin}`;
+  const length = `${formatNumber(distance_m / 1000, 2)} km`;
+  return `${length}, ${formatDuration(duration_s)}${kEnds[end]}${begin}`;
 }
 
 function readoutText(samples: MissionSamples, i: number): string {

@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { kUsualLimits } from '../../../src/store/missions/mission_page';
 import { checkGroups } from '../../../src/views/missions/checks';
 import { cursorSample, pathParts, sampleAt } from '../../../src/views/missions/map_paths';
+import { summary } from '../../../src/views/missions/mission_profile';
 import { kStrips, stripRange } from '../../../src/views/missions/profile_strips';
 import { sampleReport } from '../../support/missions';
 
@@ -33,6 +34,17 @@ describe('the path on the map', () => {
     expect(cursorSample({ ...samples, distance_m: [] }, 1)).toBeNull();
     expect(sampleAt(samples, 11)).toBe(2);
     expect(sampleAt(samples, 99)).toBe(3);
+  });
+});
+
+describe('the summary of a mission', () => {
+  it.each([
+    [45, '45 s'],
+    [239.7, '4 min 0 s'],
+    [239.2, '3 min 59 s'],
+    [3899, '1 h 4 min'],
+  ])('of %d s has the time in whole units', (duration_s, text) => {
+    expect(summary(sampleReport({ duration_s }))).toBe(`0.75 km, ${text}`);
   });
 });
 
