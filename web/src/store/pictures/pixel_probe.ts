@@ -33,12 +33,21 @@ export class PixelProbe {
   /** Where the mouse points, so that every picture of the camera marks the place; null = nowhere. */
   point(hover: Hover | null): void {
     this.store.state.hover = hover;
-    if (hover === null) {
-      this.wanted = null;
-      this.asked = '';
-      this.store.state.pixel = null;
-    }
+    if (hover === null) this.forget();
     this.store.change('hover');
+  }
+
+  /** The mouse points at a picture that asks nothing: an answer on the way belongs to another one. */
+  askNothing(): void {
+    if (this.asked === '' && this.wanted === null) return;
+    this.forget();
+    this.store.change('hover');
+  }
+
+  private forget(): void {
+    this.wanted = null;
+    this.asked = '';
+    this.store.state.pixel = null;
   }
 
   /** The newest question counts; one is answered at a time. */
@@ -54,14 +63,15 @@ export class PixelProbe {
     while (this.wanted !== null) {
       const question = this.wanted;
       this.wanted = null;
-      this.asked = JSON.stringify(question);
+      const key = JSON.stringify(question);
+      this.asked = key;
       let answer: PixelAnswer | string;
       try {
         answer = await this.rest.pixel(question);
       } catch (error) {
         answer = errorText(error);
       }
-      if (this.store.state.hover !== null) {
+      if (this.asked === key) {
         this.store.state.pixel = { question, answer };
         this.store.change('hover');
       }

@@ -233,7 +233,10 @@ export class PictureView {
     const known = store.state.hover;
     const same = known?.run === id && known.x === share.x && known.y === share.y;
     if (!same) probe.point({ run: id, group: cell.group, ...share });
-    if (cell.asks === null) return;
+    if (cell.asks === null) {
+      probe.askNothing();
+      return;
+    }
     probe.ask({
       run: id,
       frame: drawn.frame,

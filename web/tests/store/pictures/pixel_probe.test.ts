@@ -88,6 +88,23 @@ describe('PixelProbe', () => {
     expect(store.state.hover).toBeNull();
   });
 
+  it('shows no answer about a picture that the mouse has left for one that asks nothing', async () => {
+    const { asked, waiting, store, probe, settle } = probing();
+    probe.point({ run: 'r1', group: 'camera', x: 0.1, y: 0.1 });
+    probe.ask(kQuestion);
+    probe.ask({ ...kQuestion, frame: 8 });
+    probe.point({ run: 'r1', group: 'debug/feature', x: 0.1, y: 0.1 });
+    probe.askNothing();
+    waiting[0]?.resolve(kAnswer);
+    await settle();
+    expect(store.state.pixel).toBeNull();
+    expect(asked).toHaveLength(1);
+    probe.ask(kQuestion);
+    waiting[1]?.resolve(kAnswer);
+    await settle();
+    expect(store.state.pixel?.answer).toEqual(kAnswer);
+  });
+
   it('reads out grey level, place, height and range', () => {
     expect(pixelTexts(kQuestion, kAnswer)).toEqual([
       'x 100.3  y 50.0 px',
