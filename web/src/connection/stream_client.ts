@@ -229,6 +229,9 @@ export class StreamClient {
       this.options.listener.onMessage({ ...message, pictures: own });
     } else if (message.type === 'labels') {
       this.labels.set(message.id, message);
+    } else if (message.type === 'error' && message.picture !== undefined) {
+      // It answers no request.
+      if (this.runs.has(message.run ?? '')) this.options.listener.onMessage(message);
     } else if (message.type === 'ok' || message.type === 'error') {
       this.onAnswer(message);
     } else if (this.concerns(message)) {

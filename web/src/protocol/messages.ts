@@ -186,7 +186,14 @@ export interface PictureInfo {
 export type ServerMessage =
   | { type: 'hello'; protocol: number; server: string; connection: string }
   | { type: 'ok'; request?: number }
-  | { type: 'error'; request?: number; code: string; message: string }
+  | {
+      type: 'error';
+      request?: number;
+      code: string;
+      message: string;
+      run?: string;
+      picture?: string;
+    }
   | { type: 'run'; run: StreamedRun }
   | { type: 'series'; run: string; series: SeriesInfo[] }
   | { type: 'pictures'; pictures: PictureInfo[]; reduction?: number }

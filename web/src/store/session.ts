@@ -8,10 +8,10 @@ import { kUsualClock, restoringCommands, settingCommands } from './playback/cloc
 import type { Notices } from './notices';
 import type { Decode } from './pictures/picture_decoder';
 import type { OpenVideo } from './pictures/video_decoding';
-import { PictureDecoder } from './pictures/picture_decoder';
 import type { ShownRun } from './link/permalink';
 import { pictureRates } from './pictures/picture_rates';
 import { PictureWishes } from './pictures/picture_wishes';
+import { RunPictures } from './pictures/run_pictures';
 import { clockOf } from './playback/run_playback';
 import { shownAlignment } from './state';
 import type { State, Store } from './state';
@@ -24,12 +24,12 @@ export const kMostRuns = 16;
 
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
-  private readonly decoders = new Map<string, PictureDecoder>();
   /** Where and how to begin when the server has sent where all runs are. */
   private pending: { t_ns: number | null; settings: ClockSettings | null } | null = null;
   /** Position of a live viewer when the connection was lost, until all runs are there again. */
   private livePlace_ns: number | null = null;
   private readonly wishes = new PictureWishes();
+  private readonly pictures: RunPictures;
   /** A page that is not on the screen needs no pictures. */
   private pageShown = true;
   private video = false;
@@ -41,11 +41,18 @@ export class Session implements StreamListener {
   constructor(
     private readonly store: Store,
     private readonly notices: Notices,
-    private readonly decode: Decode,
-    private readonly openVideo: OpenVideo,
-    private readonly now_ms: () => number,
+    decode: Decode,
+    openVideo: OpenVideo,
+    now_ms: () => number,
   ) {
     this.state = store.state;
+    const answers = {
+      settled: (streamId: number, sequence: number) => this.client?.shown(streamId, sequence),
+      lost: (streamId: number) => this.client?.askForKey(streamId),
+      videoFailed: () => this.useVideo(false),
+    };
+    const { wishes } = this;
+    this.pictures = new RunPictures(store, notices, wishes, decode, openVideo, answers, now_ms);
   }
 
   use(client: StreamClient): void {
@@ -212,13 +219,13 @@ export class Session implements StreamListener {
     this.state.wantedSpeed = null;
     if (state.status === 'open') {
       this.subscribed = kNothingSubscribed;
-      for (const decoder of this.decoders.values()) decoder.clear();
+      this.pictures.clear();
     }
     this.store.change('connection');
   }
 
   onMessage(message: ServerMessage): void {
-    if (message.type === 'error') this.notices.error(message.message);
+    if (message.type === 'error') this.pictures.refuse(message);
     else if (message.type === 'playback') this.onPlayback(message);
     else if (message.type === 'pictures') this.onPictures(message);
     else if (message.type === 'run') this.onRun(message.run);
@@ -231,14 +238,7 @@ export class Session implements StreamListener {
   }
 
   onPicture(run: string, name: string, picture: PictureMessage): void {
-    const decoder = this.decoders.get(run);
-    if (decoder === undefined) {
-      this.client?.shown(picture.streamId, picture.sequence);
-      return;
-    }
-    const { data, encoding } = picture;
-    this.state.watchedRun(run)?.meter.count(name, data.byteLength, encoding, this.now_ms());
-    decoder.push(name, picture);
+    this.pictures.take(run, name, picture);
   }
 
   onProtocolError(text: string): void {
@@ -269,22 +269,8 @@ export class Session implements StreamListener {
     state.watched.push(watched);
     state.plotWindow = null;
     state.main ??= watched;
-    this.decoders.set(id, this.decoderOf(watched));
+    this.pictures.watch(watched);
     this.client?.watch(id, offset_ns);
-  }
-
-  private decoderOf(watched: WatchedRun): PictureDecoder {
-    return new PictureDecoder(this.decode, this.openVideo, {
-      done: (name, picture) => {
-        watched.pictures.get(name)?.bitmap.close();
-        watched.pictures.set(name, picture);
-        this.store.change('pictures');
-      },
-      settled: (streamId, sequence) => this.client?.shown(streamId, sequence),
-      failed: (text) => this.notices.error(text),
-      lost: (streamId) => this.client?.askForKey(streamId),
-      videoFailed: () => this.useVideo(false),
-    });
   }
 
   private leave(id: string): void {
@@ -292,10 +278,8 @@ export class Session implements StreamListener {
     const watched = state.watchedRun(id);
     if (watched === undefined) return;
     this.client?.unwatch(id);
-    this.decoders.get(id)?.clear();
-    this.decoders.delete(id);
+    this.pictures.leave(watched);
     this.saidOfWorld.delete(id);
-    for (const { bitmap } of watched.pictures.values()) bitmap.close();
     state.watched.splice(state.watched.indexOf(watched), 1);
     state.plotWindow = null;
     if (state.main === watched) state.main = state.watched[0] ?? null;

@@ -59,6 +59,8 @@ export class WatchedRun {
   /** The camera shown; null = the first. */
   camera: string | null = null;
   readonly pictures = new Map<string, Picture>();
+  /** Why pictures cannot be drawn, by the stream's name, until they come. */
+  readonly refusals = new Map<string, string>();
   /** For the streams whose rate a real-time flight limits, by name. */
   rates = new Map<string, PictureRate>();
   readonly meter = new PictureMeter();

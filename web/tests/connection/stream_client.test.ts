@@ -208,6 +208,20 @@ describe('StreamClient', () => {
     expect(listener.pictures).toEqual(['r1 camera']);
   });
 
+  it('takes why a picture cannot be drawn for no answer, and ignores those of other runs', () => {
+    watching();
+    client.command({ type: 'seek', t_ns: 1 });
+    socket().receive({ type: 'ok', request: socket().last().request });
+    for (const run of ['r1', 'old']) {
+      const error = { type: 'error', code: 'io', message: 'no tile', run, picture: 'scene' };
+      socket().receive(error);
+    }
+    expect(client.settled, 'where the runs are then is still to come').toBe(false);
+    expect(listener.messages.filter(({ type }) => type === 'error')).toMatchObject([{ run: 'r1' }]);
+    socket().receive(playbackMessage());
+    expect(client.settled).toBe(true);
+  });
+
   it('survives unreadable messages and reports them', () => {
     watching();
     socket().receive(new ArrayBuffer(3));

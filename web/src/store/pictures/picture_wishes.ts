@@ -1,4 +1,5 @@
 // Which pictures the panels on the screen need; the others are not subscribed.
+import { picturesOf } from '../../connection/stream_client';
 import type { PictureStream } from '../../protocol/messages';
 
 export class PictureWishes {
@@ -8,6 +9,13 @@ export class PictureWishes {
   set(panel: string, streams: readonly PictureStream[]): void {
     if (streams.length === 0) this.wishes.delete(panel);
     else this.wishes.set(panel, streams);
+  }
+
+  /** Whether a panel needs these pictures. @param name  under which they arrive */
+  has(run: string, name: string): boolean {
+    return [...this.wishes.values()]
+      .flat()
+      .some((one) => one.run === run && picturesOf(one.name, one.camera, one.view) === name);
   }
 
   /** Each stream once, as large and as often as any panel wants it. */

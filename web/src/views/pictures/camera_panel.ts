@@ -4,6 +4,7 @@ import { faultMeaning } from '../../store/fault_spans';
 import { frameInfo } from '../../store/pictures/frame_info';
 import type { FrameInfo } from '../../store/pictures/frame_info';
 import { cameraGroup, shownCamera } from '../../store/pictures/picture_groups';
+import { waitingText } from '../../store/pictures/waiting_text';
 import type { State, Topic } from '../../store/state';
 import type { WatchedRun } from '../../store/watched_run';
 import { faultColour } from '../colours';
@@ -11,7 +12,7 @@ import { h, rebuild, setAttribute, setText } from '../dom';
 import type { Context } from '../view';
 import { CameraChooser } from './camera_chooser';
 import type { CellStream } from './picture_panel';
-import { PicturePanel, waitingText } from './picture_panel';
+import { PicturePanel } from './picture_panel';
 
 export class CameraPanel extends PicturePanel {
   private readonly chooser: CameraChooser;

@@ -1,11 +1,12 @@
 // The debug images of the estimators.
 import { cameraGroup } from '../../store/pictures/picture_groups';
+import { waitingText } from '../../store/pictures/waiting_text';
 import type { State, Topic } from '../../store/state';
 import type { WatchedRun } from '../../store/watched_run';
 import { h, rebuild } from '../dom';
 import type { Context } from '../view';
 import type { CellStream } from './picture_panel';
-import { PicturePanel, waitingText } from './picture_panel';
+import { PicturePanel } from './picture_panel';
 
 export class DebugPanel extends PicturePanel {
   private readonly chooser = h('select', { id: 'debug-of', 'aria-label': 'Estimator' });

@@ -1,12 +1,13 @@
 // The depth of the ground in the camera's image.
 import { picturesOf } from '../../connection/stream_client';
 import { cameraGroup, shownCamera } from '../../store/pictures/picture_groups';
+import { waitingText } from '../../store/pictures/waiting_text';
 import type { State, Topic } from '../../store/state';
 import type { WatchedRun } from '../../store/watched_run';
 import type { Context } from '../view';
 import { CameraChooser } from './camera_chooser';
 import type { CellStream } from './picture_panel';
-import { PicturePanel, waitingText } from './picture_panel';
+import { PicturePanel } from './picture_panel';
 
 export class DepthPanel extends PicturePanel {
   private readonly chooser: CameraChooser;

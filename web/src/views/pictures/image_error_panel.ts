@@ -2,13 +2,14 @@
 // view from an estimated pose is.
 import { picturesOf } from '../../connection/stream_client';
 import { cameraGroup, shownCamera } from '../../store/pictures/picture_groups';
+import { waitingText } from '../../store/pictures/waiting_text';
 import type { State, Topic } from '../../store/state';
 import type { WatchedRun } from '../../store/watched_run';
 import { h, rebuild } from '../dom';
 import type { Context } from '../view';
 import { estimatorCamera } from './debug_panel';
 import type { CellStream } from './picture_panel';
-import { PicturePanel, waitingText } from './picture_panel';
+import { PicturePanel } from './picture_panel';
 
 const kEffects = '';
 const kStream = { max_hz: 10, quality: 85 };

@@ -2,6 +2,7 @@
 import type { PictureStream, RunInstant } from '../../protocol/messages';
 import { kNoRate, rateBadge } from '../../store/pictures/picture_rates';
 import type { RateBadge } from '../../store/pictures/picture_rates';
+import { refusalText } from '../../store/pictures/waiting_text';
 import type { State, Topic } from '../../store/state';
 import { runLetter } from '../../store/tracks';
 import type { WatchedRun } from '../../store/watched_run';
@@ -100,7 +101,8 @@ export abstract class PicturePanel implements View {
     }
     setAttribute(view.root, 'data-frame', picture === null ? null : String(picture.frame));
     if (cell === null) return false;
-    const { group, asks, legend, empty } = cell;
+    const { group, asks, legend } = cell;
+    const empty = refusalText(watched, cell.stream.name) ?? cell.empty;
     const title = runLetter(state, watched);
     view.show({ watched, picture, title, group, asks, legend, empty }, still?.t_ns ?? null);
     return true;
@@ -159,19 +161,4 @@ export function movingRate(state: State, watched: WatchedRun, key: string): Rate
   if (state.clock?.playing !== true) return kNoRate;
   const measured = watched.meter.rate(key, performance.now());
   return rateBadge(measured, watched.rates.get(key), state.reduction);
-}
-
-function sentence(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
-/** Why a run has no picture yet. */
-export function waitingText(watched: WatchedRun | null): string {
-  const run = watched?.run ?? null;
-  if (watched === null) return 'Choose a run, or launch one.';
-  if (run?.status === 'queued') return 'The run is queued.';
-  if (run?.status === 'failed') return 'The run failed.';
-  // The first flight over a world has to make the world.
-  if (run !== null && run.notice !== null) return sentence(run.notice);
-  return 'Waiting for the first picture';
 }

@@ -1,6 +1,7 @@
 // The 3D view, drawn by the server and controlled here.
 import { formatNumber } from '../../store/format';
 import { kNoRate } from '../../store/pictures/picture_rates';
+import { refusalText, waitingText } from '../../store/pictures/waiting_text';
 import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { drawnTracks } from '../../store/tracks';
@@ -8,7 +9,7 @@ import { legendEntries, legendLine } from '../alignment_legend';
 import { h, perFrame, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
-import { movingRate, standingStill, waitingText } from '../pictures/picture_panel';
+import { movingRate, standingStill } from '../pictures/picture_panel';
 import type { Context, View } from '../view';
 import { LabelLayer } from './label_layer';
 import { PictureCanvas } from './picture_canvas';
@@ -57,8 +58,9 @@ export class ScenePanel implements View {
     const still = standingStill(state, state.main);
     this.picture.markStale(still?.t_ns ?? null);
     this.panel.showFrame(picture?.frame ?? null, still?.frame ?? null);
-    this.panel.showEmpty(picture === null ? waitingText(state.main) : null);
     const { main } = state;
+    const refusal = main === null ? null : refusalText(main, 'scene');
+    this.panel.showEmpty(picture === null ? (refusal ?? waitingText(main)) : null);
     this.panel.showRate(main === null ? kNoRate : movingRate(state, main, 'scene'));
   }
 

@@ -3,7 +3,7 @@ import { picturesOf } from '../../connection/stream_client';
 import { formatTime } from '../../store/format';
 import { placeLabels } from '../../store/scene/scene_labels';
 import type { State } from '../../store/state';
-import type { Picture } from '../../store/watched_run';
+import type { Picture, WatchedRun } from '../../store/watched_run';
 import { download } from '../download';
 import { h } from '../dom';
 import { paint } from '../paint';
@@ -12,6 +12,7 @@ import { labelText } from './label_layer';
 import { sceneWish } from './scene_wish';
 
 const kView = 'shot';
+const kKey = picturesOf('scene', undefined, kView);
 const kQuality = 97;
 const kLargest_px = { width: 1920, height: 1440 };
 const kPatience_ms = 15_000;
@@ -23,35 +24,41 @@ export async function shootScene(
 ): Promise<void> {
   const { client, notices, scene, session, store } = context;
   const [wish] = sceneWish(store.state);
-  if (wish === undefined || shown.width === 0 || shown.height === 0) return;
+  const watched = wish === undefined ? undefined : store.state.watchedRun(wish.run);
+  if (wish === undefined || watched === undefined) return;
+  if (shown.width === 0 || shown.height === 0) return;
   const scale = Math.min(kLargest_px.width / shown.width, kLargest_px.height / shown.height);
   const even = (value: number) => Math.max(64, 2 * Math.floor((value * scale) / 2));
   const size = { width_px: even(shown.width), height_px: even(shown.height) };
+  // A picture of an earlier view, which came too late.
+  forget(watched);
   client.command({ type: 'view', view: kView, ...scene.view(), ...size });
   session.want(kView, [{ ...wish, view: kView, quality: kQuality, max_hz: 5, encoding: 'jpeg' }]);
   try {
-    const picture = await nextPicture(context, size.width_px);
+    const picture = await nextPicture(context, watched, size.width_px);
     const name = `overfly-3d-${wish.run}-${picture.frame}.png`;
-    download(name, await composed(store.state, picture));
+    download(name, await composed(store.state, watched, picture));
   } catch (error) {
     notices.error(`The view cannot be saved: ${error instanceof Error ? error.message : ''}`);
   } finally {
     session.want(kView, []);
-    const key = picturesOf('scene', undefined, kView);
-    store.state.main?.pictures.get(key)?.bitmap.close();
-    store.state.main?.pictures.delete(key);
+    forget(watched);
   }
 }
 
+function forget({ pictures }: WatchedRun): void {
+  pictures.get(kKey)?.bitmap.close();
+  pictures.delete(kKey);
+}
+
 /** The first picture of the wanted width; while the playback stands still, of its instant. */
-function nextPicture({ store }: Context, width_px: number): Promise<Picture> {
-  const key = picturesOf('scene', undefined, kView);
+function nextPicture({ store }: Context, watched: WatchedRun, width_px: number): Promise<Picture> {
   const end_ms = performance.now() + kPatience_ms;
   return new Promise((resolve, reject) => {
     const look = () => {
-      const { main, clock } = store.state;
-      const picture = main?.pictures.get(key);
-      const still = clock !== null && !clock.playing ? main?.instant?.frame : undefined;
+      const { clock } = store.state;
+      const picture = watched.pictures.get(kKey);
+      const still = clock !== null && !clock.playing ? watched.instant?.frame : undefined;
       const right = picture?.width_px === width_px && (still ?? picture.frame) === picture.frame;
       if (picture !== undefined && right) resolve(picture);
       else if (performance.now() > end_ms) reject(new Error('the server did not draw it in time'));
@@ -61,14 +68,13 @@ function nextPicture({ store }: Context, width_px: number): Promise<Picture> {
   });
 }
 
-async function composed(state: State, picture: Picture): Promise<Blob> {
+async function composed(state: State, { run }: WatchedRun, picture: Picture): Promise<Blob> {
   const canvas = h('canvas', { width: picture.width_px, height: picture.height_px });
   const context = canvas.getContext('2d');
   if (context === null) throw new Error('the browser cannot draw');
   context.drawImage(picture.bitmap, 0, 0);
   const unit = Math.max(10, Math.round(picture.width_px / 80));
   drawLabels(context, state, picture, unit);
-  const { run } = state;
   const time = formatTime(picture.t_ns);
   pill(context, `${run?.title ?? ''} · ${time} · frame ${picture.frame}`, unit, 'left');
   pill(context, ['Overfly', run?.attribution].filter(Boolean).join(' · '), unit, 'right');
