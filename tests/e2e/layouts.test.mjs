@@ -362,6 +362,9 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     await open('score trajectories', 'scoring');
     await open('calibrate a camera', 'calibration');
     await page.keyboard.press('Escape');
+    await dashboard.until(() => document.querySelector('.log-overlay[data-panel=calibration]').hidden);
+    assert.ok(await page.locator('.log-overlay[data-panel=scoring]').isVisible());
+    await page.keyboard.press('Escape');
     await dashboard.until(() =>
       [...document.querySelectorAll('.log-overlay')].every(({ hidden }) => hidden),
     );

@@ -112,8 +112,8 @@ export class State {
   missionPage: MissionPage = initialMissionPage();
   sweepPage: SweepPage = initialSweepPage();
   studyPage: StudyPage = initialStudyPage();
-  /** The page that was opened last. */
-  frontPage: { open: boolean } | null = null;
+  /** The pages in the order in which they were opened; some are closed again. */
+  private opened: readonly { open: boolean }[] = [];
 
   /** The pages over the dashboard, which cover it while they are open. */
   get pages(): readonly { open: boolean }[] {
@@ -133,7 +133,15 @@ export class State {
   /** Opens a page over the others, also if it is open below them. */
   openPage(page: { open: boolean }): void {
     page.open = true;
-    this.frontPage = page;
+    this.opened = [...this.opened.filter((other) => other !== page), page];
+  }
+  /** The page that was opened last. */
+  get frontPage(): { open: boolean } | null {
+    return this.opened.at(-1) ?? null;
+  }
+  /** The open page that lies over the others. */
+  get topPage(): { open: boolean } | null {
+    return this.opened.filter(({ open }) => open).at(-1) ?? null;
   }
 
   // ---- the main run ----------------------------------------------------------------------------

@@ -25,6 +25,20 @@ describe('Store', () => {
   });
 });
 
+describe('the pages', () => {
+  it('lie over each other as they were opened', () => {
+    const { state } = new Store();
+    expect(state.topPage).toBeNull();
+    for (const page of [state.logPage, state.sweepPage, state.logPage]) state.openPage(page);
+    expect(state.topPage).toBe(state.logPage);
+    state.logPage.open = false;
+    expect(state.topPage).toBe(state.sweepPage);
+    expect(state.frontPage).toBe(state.logPage);
+    state.sweepPage.open = false;
+    expect(state.topPage).toBeNull();
+  });
+});
+
 describe('plannedEnd_ns', () => {
   it('is the duration, but not the limit of a live flight', () => {
     const watched = new WatchedRun('r1');

@@ -154,7 +154,7 @@ export const kShortcuts: readonly Shortcut[] = [
     label: 'Esc',
     what: 'close, restore',
     overPages: true,
-    run: (context) => restoreScreen(context),
+    run: (context) => closeTopmost(context),
   },
 ];
 
@@ -209,22 +209,35 @@ function toggleHelp(store: Context['store']): void {
   store.change('help');
 }
 
-function restoreScreen({ store, layouts }: Context): void {
+/** Closes what lies over everything else; if nothing does, restores an enlarged panel. */
+export function closeTopmost(context: Context): void {
+  const { store, connect, layouts } = context;
   const { state } = store;
-  state.helpOpen = false;
-  state.paletteOpen = false;
-  state.connect.open = false;
-  for (const page of state.pages) page.open = false;
-  store.change(
-    'help',
-    'launch',
-    'logs',
-    'missions',
-    'palette',
-    'scoring',
-    'calibration',
-    'sweeps',
-    'studies',
-  );
-  layouts.restore();
+  if (state.helpOpen) {
+    toggleHelp(store);
+  } else if (state.paletteOpen) {
+    state.paletteOpen = false;
+    store.change('palette');
+  } else if (state.connect.open) {
+    connect.close();
+  } else if (state.topPage !== null) {
+    deskOf(context, state.topPage)?.close();
+  } else {
+    layouts.restore();
+  }
+}
+
+/** What closes a page also ends what only the page needs. */
+function deskOf(context: Context, page: { open: boolean }): { close(): void } | undefined {
+  const { state } = context.store;
+  const desks = new Map<{ open: boolean }, { close(): void }>([
+    [state.scenarioEditor, context.scenarios],
+    [state.logPage, context.logs],
+    [state.scorePage, context.scores],
+    [state.calibrationPage, context.calibration],
+    [state.missionPage, context.missions],
+    [state.sweepPage, context.sweeps],
+    [state.studyPage, context.studies],
+  ]);
+  return desks.get(page);
 }

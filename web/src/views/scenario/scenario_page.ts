@@ -11,6 +11,7 @@ import {
   sectionsOf,
 } from '../../store/scenario/sections';
 import type { State, Topic } from '../../store/state';
+import { closeTopmost } from '../commands/shortcuts';
 import { h, rebuild, setText } from '../dom';
 import type { Context, View } from '../view';
 import { SaveBar } from './save_bar';
@@ -70,7 +71,9 @@ export class ScenarioPageView implements View {
         role: 'dialog',
         'aria-label': 'Edit the scenario',
         onkeydown: (event: KeyboardEvent) => {
-          if (event.key === 'Escape') this.desk.close();
+          if (event.key !== 'Escape') return;
+          event.stopPropagation();
+          closeTopmost(context);
         },
       },
       h(

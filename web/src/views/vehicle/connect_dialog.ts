@@ -2,6 +2,7 @@
 import type { ConnectForm, LinkKind } from '../../store/vehicle/vehicle_connect';
 import { kGeoid, kLink, kSystem, linkOf } from '../../store/vehicle/vehicle_connect';
 import type { Topic } from '../../store/state';
+import { closeTopmost } from '../commands/shortcuts';
 import { h, rebuild, setText } from '../dom';
 import type { Context, View } from '../view';
 
@@ -61,7 +62,9 @@ export class ConnectDialog implements View {
           if (event.target === this.root) this.context.connect.close();
         },
         onkeydown: (event: KeyboardEvent) => {
-          if (event.key === 'Escape') this.context.connect.close();
+          if (event.key !== 'Escape') return;
+          event.stopPropagation();
+          closeTopmost(this.context);
         },
       },
       this.dialog(),

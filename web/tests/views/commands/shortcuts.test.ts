@@ -5,6 +5,8 @@ import { Viewing } from '../../support/viewing';
 
 let viewing: Viewing;
 let listeners: ((event: unknown) => void)[];
+/** What was closed by its own close(), in this order. */
+let closed: string[];
 
 beforeEach(() => {
   listeners = [];
@@ -23,7 +25,26 @@ beforeEach(() => {
   viewing = new Viewing();
   viewing.watch();
   const { store, player } = viewing;
-  listenToKeys({ store, player, layouts: { restore: () => undefined } } as unknown as Context);
+  const { state } = store;
+  closed = [];
+  const desk = (name: string, page: { open: boolean }) => ({
+    close: () => {
+      page.open = false;
+      closed.push(name);
+    },
+  });
+  const desks = {
+    connect: desk('connect', state.connect),
+    scenarios: desk('scenarios', state.scenarioEditor),
+    logs: desk('logs', state.logPage),
+    scores: desk('scores', state.scorePage),
+    calibration: desk('calibration', state.calibrationPage),
+    missions: desk('missions', state.missionPage),
+    sweeps: desk('sweeps', state.sweepPage),
+    studies: desk('studies', state.studyPage),
+  };
+  const layouts = { restore: () => closed.push('layouts') };
+  listenToKeys({ store, player, layouts, ...desks } as unknown as Context);
 });
 afterEach(() => vi.unstubAllGlobals());
 
@@ -35,24 +56,42 @@ function press(key: string): void {
 describe('the shortcuts', () => {
   it('steer nothing behind a page', () => {
     const { state } = viewing.store;
-    state.sweepPage.open = true;
+    state.openPage(state.sweepPage);
     const sent = viewing.socket.sent.length;
     press(' ');
     press('?');
     expect(viewing.socket.sent).toHaveLength(sent);
     expect(state.helpOpen).toBe(true);
     press('Escape');
+    expect(state.helpOpen).toBe(false);
+    expect(state.covered, 'the help lies over the page').toBe(true);
+    press('Escape');
     expect(state.covered).toBe(false);
     press(' ');
     expect(viewing.socket.last().type).toBe('play');
   });
 
-  it('close everything that lies over the dashboard', () => {
+  it('close one thing after the other, the topmost first, each by its own close()', () => {
     const { state } = viewing.store;
-    for (const page of state.pages) page.open = true;
+    for (const page of state.pages) state.openPage(page);
+    state.openPage(state.scorePage);
     state.connect.open = true;
+    state.paletteOpen = true;
     press('Escape');
+    expect(state.paletteOpen).toBe(false);
+    expect(closed).toEqual([]);
+    for (let i = 0; i < 9; i += 1) press('Escape');
+    expect(closed).toEqual([
+      'connect',
+      'scores',
+      'studies',
+      'sweeps',
+      'missions',
+      'calibration',
+      'logs',
+      'scenarios',
+      'layouts',
+    ]);
     expect(state.covered).toBe(false);
-    expect(state.connect.open).toBe(false);
   });
 });
