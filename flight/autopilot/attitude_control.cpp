@@ -21,7 +21,9 @@ AttitudeControl::AttitudeControl(const Parameters& p, const dynamics::Airframe& 
       roll_{.forward = p.rll_rate_ff,
             .proportional = p.rll_rate_p,
             .integral = p.rll_rate_i,
-            .range_rad = frame.aileron.max_rad,
+            .range_rad = frame.aileron.range_rad(),
+            .lowest = frame.aileron.min_rad / frame.aileron.range_rad(),
+            .highest = frame.aileron.max_rad / frame.aileron.range_rad(),
             .actuator_lag_s = frame.aileron.lag_s,
             .response_s = damping_time_s(frame.inertia.xx,
                                          frame.wing.area_m2,
@@ -31,14 +33,16 @@ AttitudeControl::AttitudeControl(const Parameters& p, const dynamics::Airframe& 
       pitch_{.forward = p.ptch_rate_ff,
              .proportional = p.ptch_rate_p,
              .integral = p.ptch_rate_i,
-             .range_rad = -frame.elevator.min_rad,
+             .range_rad = frame.elevator.range_rad(),
+             .lowest = -frame.elevator.max_rad / frame.elevator.range_rad(),
+             .highest = -frame.elevator.min_rad / frame.elevator.range_rad(),
              .actuator_lag_s = frame.elevator.lag_s,
              .response_s = damping_time_s(frame.inertia.yy,
                                           frame.wing.area_m2,
                                           frame.wing.chord_m,
                                           frame.pitch.pitch_rate,
                                           p.airspeed_cruise)},
-      rudder_range_rad_(frame.rudder.max_rad) {}
+      rudder_range_rad_(frame.rudder.range_rad()) {}
 
 void AttitudeControl::set_parameters(const Parameters& p, const dynamics::Airframe& frame) {
   const AttitudeControl before = std::exchange(*this, AttitudeControl(p, frame));
@@ -72,10 +76,10 @@ double AttitudeControl::RateLoop::update(double speed_ratio,
   const double direct = forward * speed_ratio * demand_rad_s + proportional * square * error;
   // A surface at its end does not integrate further.
   const double wanted = direct + held;
-  if (std::abs(wanted) < 1.0 || wanted * error < 0.0) {
-    held = std::clamp(held + integral * square * error * dt_s, -1.0, 1.0);
+  if ((wanted > lowest && wanted < highest) || wanted * error < 0.0) {
+    held = std::clamp(held + integral * square * error * dt_s, lowest, highest);
   }
-  return std::clamp(direct + held, -1.0, 1.0);
+  return std::clamp(direct + held, lowest, highest);
 }
 
 dynamics::Controls AttitudeControl::update(const AttitudeDemand& demand,

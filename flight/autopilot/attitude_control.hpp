@@ -36,9 +36,10 @@ class AttitudeControl {
  private:
   struct RateLoop {
     double forward, proportional, integral;  // shares of the range
-    double range_rad;
-    double actuator_lag_s, response_s;  // of the airframe to its surface
-    double held = 0.0;                  // integral, share of the range
+    double range_rad;                        // the larger one of the two directions
+    double lowest, highest;                  // shares of the range
+    double actuator_lag_s, response_s;       // of the airframe to its surface
+    double held = 0.0;                       // integral, share of the range
     double behind_actuator_rad_s = 0.0, expected_rad_s = 0.0;
 
     /// Takes over the state of a loop with other gains.

@@ -74,7 +74,7 @@ constexpr double kIntegralRate = 4.0;
 constexpr double kSlipTimeS = 3.0;
 
 void tune_roll(Parameters& p, const dynamics::LinearModel& model, const dynamics::Airframe& frame) {
-  const double range = frame.aileron.max_rad;
+  const double range = frame.aileron.range_rad();
   const double effect = model.B_lat(1, 0);
   const double forward = -model.A_lat(1, 1) / effect / range;
   // The loop of gain K around the lags a and b of actuator and airframe has the characteristic
@@ -86,7 +86,7 @@ void tune_roll(Parameters& p, const dynamics::LinearModel& model, const dynamics
   p.rll_rate_ff = clamp_to("RLL_RATE_FF", forward);
   p.rll_rate_p = clamp_to("RLL_RATE_P", gain);
   p.rll_rate_i = clamp_to("RLL_RATE_I", kIntegralRate * gain);
-  const double rudder = std::abs(model.B_lat(2, 1)) * frame.rudder.max_rad;
+  const double rudder = std::abs(model.B_lat(2, 1)) * frame.rudder.range_rad();
   p.kff_rddrmix =
       clamp_to("KFF_RDDRMIX", -model.B_lat(2, 0) * range / rudder);  // cancels adverse yaw
 }
@@ -98,7 +98,7 @@ void tune_pitch(Parameters& p,
   const Eigen::Matrix2d A = model.A_lon.block<2, 2>(1, 1);
   const Eigen::Vector2d B = model.B_lon.block<2, 1>(1, 0);
   const double rate_per_elevator = -(A.inverse() * B)(1);
-  const double range = std::abs(frame.elevator.min_rad);
+  const double range = frame.elevator.range_rad();
   const double gain = kPitchOverActuator / (frame.elevator.lag_s * std::abs(B(1))) / range;
   p.ptch_rate_ff = clamp_to("PTCH_RATE_FF", std::abs(1.0 / rate_per_elevator) / range);
   p.ptch_rate_p = clamp_to("PTCH_RATE_P", gain);
@@ -110,7 +110,7 @@ void tune_yaw(Parameters& p,
               const dynamics::Airframe& frame,
               double airspeed_m_s,
               double gravity_m_s2) {
-  const double range = frame.rudder.max_rad;
+  const double range = frame.rudder.range_rad();
   const double effect = std::abs(model.B_lat(2, 1));
   const auto dutch_roll = dynamics::modes(model).dutch_roll;
   if (dutch_roll && dutch_roll->damping < kLoopDamping) {

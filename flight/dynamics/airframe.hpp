@@ -1,6 +1,7 @@
 // A fixed-wing airframe as values: mass, aerodynamic coefficients, propulsion, actuators.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 namespace overfly::dynamics {
@@ -82,6 +83,9 @@ struct SurfaceLimits {
   double max_rad = 0.0;
   double rate_rad_s = 0.0;
   double lag_s = 0.0;  ///< time constant
+
+  /// The larger deflection, of which the autopilot's commands are shares.
+  [[nodiscard]] double range_rad() const { return std::max(-min_rad, max_rad); }
 };
 
 struct ThrottleLimits {

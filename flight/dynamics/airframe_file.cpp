@@ -225,6 +225,8 @@ void read_surface(FieldReader& reader, const std::string& name, SurfaceLimits& s
   const std::string group = "actuators." + name;
   reader.angle(group + ".min_deg", surface.min_rad, -90.0, 0.0);
   reader.angle(group + ".max_deg", surface.max_rad, 0.0, 90.0);
+  reader.require(surface.min_rad < 0.0 && surface.max_rad > 0.0,
+                 group + ": must move to both sides: min_deg below 0, max_deg above 0");
   reader.angle(group + ".rate_deg_s", surface.rate_rad_s, 1.0, 10000.0);
   reader.number(group + ".lag_s", surface.lag_s, 0.001, 5.0);
 }
