@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Increase whenever the landscape changes, so that earlier cached worlds are not used.
-constexpr int kLandscapeVersion = 4;
+constexpr int kLandscapeVersion = 5;
 /// Texels per side are a multiple of this, so that all overviews are exact.
 constexpr int kSideStepPx = 32;
 

@@ -112,7 +112,7 @@ Rgb Airfield::runway_colour(float u, float v, float fine, float small, float mid
   // Landing at the north end, the view is along +u with +v to the right.
   paint = std::max(paint,
                    u < 0.0F ? end_marking(u + half, v, width_m, designator)
-                            : end_marking(half - u, -v, width_m, designator + 18));
+                            : end_marking(half - u, -v, width_m, (designator + 17) % 36 + 1));
   const float wear = std::clamp(0.80F + 0.3F * small - 0.45F * rubber, 0.0F, 1.0F);
   return mix(asphalt, {222, 222, 214}, paint * wear);
 }
