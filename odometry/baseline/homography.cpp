@@ -156,8 +156,10 @@ class HomographyOdometry final : public BaselinePort {
                kLeastKept * static_cast<double>(corners_at_start_);
   }
 
-  /// Points on the plane z = 1 of both cameras.
-  void ideal_points(std::vector<cv::Point2d>& reference, std::vector<cv::Point2d>& current) const {
+  /// Points on the plane z = 1 of both cameras. Drops the corners for which the lens has no ray:
+  /// they may be followed a little beyond the image.
+  void ideal_points(std::vector<cv::Point2d>& reference, std::vector<cv::Point2d>& current) {
+    Corners kept;
     for (std::size_t i = 0; i < corners_.current_px.size(); ++i) {
       const cv::Point2f& a = corners_.reference_px[i];
       const cv::Point2f& b = corners_.current_px[i];
@@ -166,7 +168,10 @@ class HomographyOdometry final : public BaselinePort {
       if (!ray_a || !ray_b) continue;
       reference.emplace_back(ray_a->x(), ray_a->y());
       current.emplace_back(ray_b->x(), ray_b->y());
+      kept.reference_px.push_back(a);
+      kept.current_px.push_back(b);
     }
+    corners_ = std::move(kept);
   }
 
   /// Fits the homography and drops what does not agree with it. @return whether there is one
@@ -174,7 +179,7 @@ class HomographyOdometry final : public BaselinePort {
     std::vector<cv::Point2d> reference;
     std::vector<cv::Point2d> current;
     ideal_points(reference, current);
-    if (current.size() != corners_.current_px.size() || current.size() < kLeastPoints) return false;
+    if (current.size() < kLeastPoints) return false;
     std::vector<std::uint8_t> inlier;
     const double threshold = kInlierPx / camera_.pinhole().fx_px;
     const cv::Mat found = cv::findHomography(reference, current, cv::RANSAC, threshold, inlier);
