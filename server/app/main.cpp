@@ -1,6 +1,8 @@
 // overfly: the command line.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
@@ -42,6 +44,10 @@ int main(int argc, char** argv) {
   } catch (const std::exception& failure) {
     // Exceptions that no command handles: a removed working folder, out of memory.
     return report({overfly::ErrorCode::kInternal, failure.what()});
+  }
+  std::cout.flush();
+  if (exit_code == kExitOk && (!std::cout || std::fflush(stdout) != 0)) {
+    return report({overfly::ErrorCode::kIo, "the standard output cannot be written"});
   }
   return exit_code;
 }

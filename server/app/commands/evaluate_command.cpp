@@ -235,7 +235,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->add_option("--max-time-difference-ms",
                    arguments->max_time_difference_ms,
                    "Limit for --association nearest")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1e9))
       ->excludes(run)
       ->capture_default_str();
   command

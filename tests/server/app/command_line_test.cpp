@@ -105,6 +105,14 @@ TEST_F(CommandLine, ScenarioListsValidatesAndShows) {
   EXPECT_TRUE(Json::parse(overfly_program({"scenario", "schema"}).out).contains("$defs"));
 }
 
+/// A script must not take a cut result for a whole one.
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsAFailure) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const Outcome outcome = overfly_program({"scenario", "schema"}, "/dev/full");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("the standard output cannot be written"));
+}
+
 TEST_F(CommandLine, DoctorFindsAFolderThatCannotBeWritten) {
   const Outcome good = overfly_program({"doctor", "--runs", path("runs")});
   EXPECT_THAT(good.out, HasSubstr("rasters (GDAL)"));

@@ -21,7 +21,8 @@ void redirect(const std::filesystem::path& file, int descriptor) {
 }  // namespace
 
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments,
-                               const std::filesystem::path& folder)
+                               const std::filesystem::path& folder,
+                               const std::filesystem::path& out)
     : folder_(folder) {
   std::vector<std::string> all = {OVERFLY_PROGRAM};
   all.insert(all.end(), arguments.begin(), arguments.end());
@@ -29,14 +30,14 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments,
   argv.reserve(all.size() + 1);
   for (std::string& argument : all) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const std::filesystem::path out = folder_ / "out.txt";
+  const std::filesystem::path own_out = folder_ / "out.txt";
   const std::filesystem::path err = folder_ / "err.txt";
-  write_text(out, "");  // there to be read before the child has opened it
+  write_text(own_out, "");  // there to be read before the child has opened it
   write_text(err, "");
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ == 0) {
-    redirect(out, STDOUT_FILENO);
+    redirect(out.empty() ? own_out : out, STDOUT_FILENO);
     redirect(err, STDERR_FILENO);
     ::execv(OVERFLY_PROGRAM, argv.data());
     ::_exit(127);
@@ -65,9 +66,10 @@ bool RunningProgram::running() {
 std::string RunningProgram::out() const { return read_text(folder_ / "out.txt"); }
 std::string RunningProgram::err() const { return read_text(folder_ / "err.txt"); }
 
-Outcome overfly_program(const std::vector<std::string>& arguments) {
+Outcome overfly_program(const std::vector<std::string>& arguments,
+                        const std::filesystem::path& out) {
   const TemporaryFolder folder;
-  RunningProgram program(arguments, folder.path());
+  RunningProgram program(arguments, folder.path(), out);
   const int exit_code = program.wait();
   return {exit_code, program.out(), program.err()};
 }

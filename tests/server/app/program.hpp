@@ -16,13 +16,18 @@ struct Outcome {
 };
 
 /// Runs the program to its end.
-[[nodiscard]] Outcome overfly_program(const std::vector<std::string>& arguments);
+/// @param out  where standard output goes instead of Outcome::out; empty = nowhere else
+[[nodiscard]] Outcome overfly_program(const std::vector<std::string>& arguments,
+                                      const std::filesystem::path& out = {});
 
 /// The running program; killed with the object.
 class RunningProgram {
  public:
   /// Standard output and error go to files in `folder`.
-  RunningProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  /// @param out  where standard output goes instead; empty = nowhere else
+  RunningProgram(const std::vector<std::string>& arguments,
+                 const std::filesystem::path& folder,
+                 const std::filesystem::path& out = {});
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;

@@ -170,6 +170,7 @@ TEST_F(TrackCommand, NamesWhatIsWrong) {
       {{"--camera-name", "cam7"}, "cam7/data.csv: no such file"},
       {{"--points", "/no/such/folder/p.ply"}, "folder /no/such/folder does not exist"},
       {{"--points", "/"}, "/: is a folder, must be a file"},
+      {{"--statuses", path("t.tum")}, "is the file of --statuses"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = track(arguments);

@@ -128,7 +128,11 @@ Status write_files(const CalibrateArguments& arguments,
   }
   for (const ExportRequest& request : requests) {
     const auto text = server::camera_text(request.format, record.result.camera, "camera");
-    if (!text) return text.error().in("--export " + request.file);
+    if (!text) {
+      // The format cannot hold this lens: another option, not another machine, helps.
+      return Error{ErrorCode::kInvalidArgument,
+                   text.error().in("--export " + request.file).message};
+    }
     if (Status status = server::write_whole(request.file, *text); !status) return status;
   }
   return {};

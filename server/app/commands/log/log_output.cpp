@@ -64,20 +64,6 @@ Status check_log_output(const std::string& log, const std::string& option, const
                option + " " + out + ": folder " + folder.string() + " does not exist"};
 }
 
-Status check_other_output(const std::string& option,
-                          const std::string& out,
-                          const std::string& other_option,
-                          const std::string& other) {
-  std::error_code failure;
-  const bool is_same = fs::equivalent(out, other, failure) ||
-                       fs::weakly_canonical(fs::absolute(out, failure), failure) ==
-                           fs::weakly_canonical(fs::absolute(other, failure), failure);
-  if (!is_same) return {};
-  return Error{
-      ErrorCode::kInvalidArgument,
-      option + " " + out + ": is the file of " + other_option + " " + other + ": must be another"};
-}
-
 Status check_log_flight(const LogFlightArguments& arguments) {
   const std::string extension = fs::path(arguments.out).extension().string();
   if (extension != ".tum" && extension != ".csv") {

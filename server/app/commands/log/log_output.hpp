@@ -44,11 +44,5 @@ struct LogFlightArguments {
 [[nodiscard]] Status check_log_output(const std::string& log,
                                       const std::string& option,
                                       const std::string& out);
-/// Checks that two files that are to be written are not the same, also by different names.
-/// Errors: kInvalidArgument naming both options.
-[[nodiscard]] Status check_other_output(const std::string& option,
-                                        const std::string& out,
-                                        const std::string& other_option,
-                                        const std::string& other);
 
 }  // namespace overfly::app

@@ -12,6 +12,7 @@
 #include "flight/replay/smooth_log.hpp"
 #include "server/app/commands/log/log_output.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/stop_signal.hpp"
 
 namespace overfly::app {

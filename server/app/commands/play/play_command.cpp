@@ -161,7 +161,7 @@ int play(const PlayArguments& arguments) {
   std::cout << played->sent << " messages sent";
   if (played->unsent > 0) std::cout << ", " << played->unsent << " that nobody took";
   std::cout << std::endl;
-  return kExitOk;
+  return catch_stop_signals() ? kExitCancelled : kExitOk;
 }
 
 }  // namespace

@@ -5,17 +5,20 @@
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/commands/track/track_arguments.hpp"
 #include "server/app/commands/track/track_summary.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/dataset/open_dataset.hpp"
@@ -59,6 +62,20 @@ Status check_output_file(const std::string& file) {
 
 /// Checked before the estimator runs, so that no result is lost because its file cannot be written.
 Status check_outputs(const TrackArguments& arguments) {
+  using Option = std::pair<const char*, const std::string*>;
+  const Option files[] = {{"--out", &arguments.out},
+                          {"--statuses", &arguments.statuses},
+                          {"--points", &arguments.points},
+                          {"--truth", &arguments.truth},
+                          {"--times", &arguments.times}};
+  constexpr std::size_t kWritten = 3;
+  for (std::size_t i = 0; i < kWritten; ++i) {
+    for (std::size_t j = i + 1; j < std::size(files); ++j) {
+      Status status =
+          check_other_output(files[i].first, *files[i].second, files[j].first, *files[j].second);
+      if (!status) return status;
+    }
+  }
   for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
     if (file.empty()) continue;
     if (Status status = check_output_file(file); !status) return status;
