@@ -286,6 +286,12 @@ Result<std::unique_ptr<LogUpload>> LogUploads::begin_set(const std::vector<Uploa
   std::uint64_t total = 0;
   for (const UploadFile& file : files) total += file.size_bytes;
   const fs::path stem = fs::path(files.front().name).stem();
+  if (stem == kCalibrationsFolder) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "files: \"" + files.front().name +
+                     "\": the name is that of the folder of "
+                     "calibrations: must be another"};
+  }
   return begin_into(room_->folder / stem, files, total, refusal, log_upload_kind());
 }
 
@@ -333,8 +339,9 @@ Status LogUploads::remove(const fs::path& file) const {
   const auto is_own = [&](const fs::path& folder) {
     return !own.empty() && fs::equivalent(folder, own, failed);
   };
-  const bool is_mapping =
-      file.stem() == parent.filename() && lower_case(file.extension().string()) == ".json";
+  const bool is_mapping = parent.filename() != kCalibrationsFolder &&
+                          file.stem() == parent.filename() &&
+                          lower_case(file.extension().string()) == ".json";
   if (is_own(parent.parent_path()) && is_mapping) {
     if (fs::remove_all(parent, failed) > 0 && !failed) return {};
     return Error{ErrorCode::kIo, parent.string() + ": cannot be deleted: " + failed.message()};

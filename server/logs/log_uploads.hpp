@@ -17,6 +17,9 @@
 
 namespace overfly::server {
 
+/// Folder in that of the uploads for saved calibrations; no set of uploaded files has this name.
+inline constexpr const char* kCalibrationsFolder = "calibrations";
+
 struct UploadLimits {
   std::uint64_t quota_bytes = std::uint64_t{4} << 30U;  ///< all uploads together; 0 = no uploads
   std::uint64_t max_bytes = std::uint64_t{2} << 30U;    ///< one upload

@@ -82,7 +82,7 @@ struct ServerContext {
     };
     desk.cameras = options.cameras;
     const bool keeps = !options.uploads_folder.empty() && options.limits.uploads.quota_bytes > 0;
-    if (keeps) desk.store = options.uploads_folder / "calibrations";
+    if (keeps) desk.store = options.uploads_folder / server::kCalibrationsFolder;
     desk.begin_thread = [] { server::lower_thread(server::ThreadPriority::kBelowFlights); };
     return desk;
   }

@@ -86,6 +86,7 @@ Status CalibrationStore::save(const std::string& name, const CalibrationRecord& 
                      ": must be letters, digits, '_', '-' and '.', at most " +
                      std::to_string(kLongestCalibrationName) + ", not beginning with '.'"};
   }
+  const std::lock_guard lock(saving_);
   if (stored_names(folder_).size() >= kMostStoredCalibrations) {
     return Error{ErrorCode::kConflict,
                  std::to_string(kMostStoredCalibrations) +

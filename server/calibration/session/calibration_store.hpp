@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -40,6 +41,7 @@ class CalibrationStore {
   [[nodiscard]] Result<std::filesystem::path> find(const std::string& name) const;
 
   std::filesystem::path folder_;
+  mutable std::mutex saving_;  ///< one calibration at a time: the limit, and its file's name
 };
 
 }  // namespace overfly::server

@@ -24,6 +24,15 @@ std::string image_title(const char* what, std::int64_t number) {
   return std::string(what) + " " + std::to_string(number);
 }
 
+/// The server's folders and temporary files are no business of its clients.
+Error error_for_client(const Error& error) {
+  if (error.code == ErrorCode::kIo) {
+    return {error.code,
+            "the server cannot read or store the image: are its disk full or its rights missing?"};
+  }
+  return {ErrorCode::kUnreadable, "cannot be read as PNG, JPEG, PGM or PPM"};
+}
+
 class FolderBoards final : public BoardImages {
  public:
   explicit FolderBoards(std::vector<fs::path> files) : files_(std::move(files)) {}
@@ -32,8 +41,7 @@ class FolderBoards final : public BoardImages {
     const fs::path& file = files_[next_++];
     const std::string name = file.filename().string();
     Result<Image> image = read_grey_image(file);
-    // The server's folders are no business of its clients.
-    if (!image) image = Error{image.error().code, "cannot be read as PNG, JPEG, PGM or PPM"};
+    if (!image) image = error_for_client(image.error());
     return board_image(name, std::move(image));
   }
   [[nodiscard]] bool ended() const override { return next_ == files_.size(); }
@@ -172,8 +180,7 @@ Next UploadedImages::next(std::chrono::milliseconds patience) {
   picture.encoding = "compressed";
   picture.data = file.bytes;
   Result<Image> image = grey_picture(picture);
-  // Its temporary file has a name that means nothing to a client.
-  if (!image) image = Error{ErrorCode::kUnreadable, "cannot be read as PNG, JPEG, PGM or PPM"};
+  if (!image) image = error_for_client(image.error());
   return board_image(std::move(file.name), std::move(image));
 }
 

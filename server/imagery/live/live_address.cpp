@@ -91,10 +91,9 @@ std::string without_password(std::string_view text) {
   const std::size_t begin = text.find("://");
   const std::size_t at = text.rfind('@');
   const bool topic = text.starts_with("lcm:") || text.starts_with("ros1:");
-  if (topic || begin == std::string_view::npos || at == std::string_view::npos || at < begin) {
-    return std::string(text.substr(0, 200));
-  }
-  return std::string(text.substr(0, begin + 3)) + "..." + std::string(text.substr(at, 200));
+  if (topic || at == std::string_view::npos) return std::string(text.substr(0, 200));
+  const std::size_t kept = begin == std::string_view::npos || begin > at ? 0 : begin + 3;
+  return std::string(text.substr(0, kept)) + "..." + std::string(text.substr(at, 200));
 }
 
 }  // namespace

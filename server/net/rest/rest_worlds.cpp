@@ -1,3 +1,4 @@
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "server/net/http/error_response.hpp"
 #include "server/net/http/json_text.hpp"
 #include "server/net/rest/rest_api.hpp"
+#include "server/net/rest/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -126,7 +128,11 @@ void answer_heights(const WorldRoutes& routes, const RouteCall& call, const Resp
 }
 
 /// Makes a built-in world. It goes on if the client leaves, or waits no longer.
-void answer_make(const WorldRoutes& routes, const RouteCall& call, const Respond& respond) {
+/// @param taken  the place of this request, held until the world is made
+void answer_make(const WorldRoutes& routes,
+                 const RouteCall& call,
+                 const Respond& respond,
+                 const std::shared_ptr<const void>& taken) {
   std::shared_ptr<ProgressBoard::Entry> entry;
   if (const std::string id = call.query_or("progress", ""); !id.empty()) {
     if (!is_progress_id(id)) {
@@ -142,7 +148,7 @@ void answer_make(const WorldRoutes& routes, const RouteCall& call, const Respond
                   "a world",
                   RouteCall{stays, call.path, call.query},
                   respond,
-                  [maps = routes.maps, name = call.path.at("name"), entry](
+                  [maps = routes.maps, name = call.path.at("name"), entry, taken](
                       const std::atomic<bool>* cancel) -> Result<json> {
                     Result<json> made =
                         maps->describe(name, cancelled_by(cancel), [&](double share) {
@@ -175,10 +181,17 @@ void add_world_routes(RestRouter* router, const WorldRoutes& routes) {
               return maps->describe(name, cancelled_by(cancel));
             });
       });
+  // A second one would hold the other reading thread, also while it waits for the same world.
+  const auto making = std::make_shared<std::atomic<int>>(0);
   router->add("POST",
               "/api/v1/worlds/{name}/make",
-              [routes](const RouteCall& call, const Respond& respond) {
-                answer_make(routes, call, respond);
+              [routes, making](const RouteCall& call, const Respond& respond) {
+                auto taken = take_slot(making, 1);
+                if (!taken) {
+                  return respond(error_response(
+                      503, "too_many_makes", "another world is being made: try again soon"));
+                }
+                answer_make(routes, call, respond, taken);
               },
               {"progress"});
   router->add("GET",

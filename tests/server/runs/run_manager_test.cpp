@@ -97,6 +97,20 @@ TEST_F(RunManagerTest, OpensOnlyTheLinksThatTheOperatorAllows) {
             ErrorCode::kForbidden);
 }
 
+/// A document with any field of `lcm` has the default URL filled in.
+TEST_F(RunManagerTest, TheDefaultNetworkOfLcmIsOpenToClients) {
+  const auto runs = std::move(RunManager::create(options()).value());
+  const auto load = [&](const char* lcm) {
+    const nlohmann::json estimator = {
+        {"name", "x"}, {"type", "lcm"}, {"lcm", nlohmann::json::parse(lcm)}};
+    return runs->library().load_to_fly("small",
+                                       {{"estimators", nlohmann::json::array({estimator})}});
+  };
+  EXPECT_TRUE(load(R"({"channel_prefix": "MINE_"})").ok());
+  EXPECT_EQ(load(R"({"url": "udpm://239.255.76.68:7667?ttl=1"})").error().code,
+            ErrorCode::kForbidden);
+}
+
 TEST_F(RunManagerTest, TakesTheFolderDataOfScenarioFilesForDeclared) {
   nlohmann::json document = testing::small_document();
   document["world"] = {{"manifest", testing::small_world().filename().string()}};

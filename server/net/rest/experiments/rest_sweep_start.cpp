@@ -9,6 +9,7 @@
 #include "server/net/http/error_response.hpp"
 #include "server/net/http/json_text.hpp"
 #include "server/net/rest/rest_api.hpp"
+#include "server/net/rest/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -142,17 +143,8 @@ HttpResponse check_sweep(const SweepService& sweeps, SweepBody body, Cancel canc
                         {"flight_s", nullptr}});
 }
 
-/// A check of a large sweep takes seconds of a reading thread, which other viewers need too.
+/// A check of a large sweep takes seconds of a reading thread.
 constexpr int kMostChecks = 2;
-
-/// One of the checks that wait or are made; null if there are enough of them.
-std::shared_ptr<const void> take_check(const std::shared_ptr<std::atomic<int>>& checks) {
-  if (checks->fetch_add(1) >= kMostChecks) {
-    checks->fetch_sub(1);
-    return nullptr;
-  }
-  return {checks.get(), [checks](const void*) { checks->fetch_sub(1); }};
-}
 
 /// Reads the body, then answers on a reading thread, since every cell of a sweep is checked.
 template <typename Answer>
@@ -201,7 +193,7 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
   router->add("POST",
               "/api/v1/sweep-check",
               [routes, sweeps, checks](const RouteCall& call, const Respond& respond) {
-                const auto taken = take_check(checks);
+                const auto taken = take_slot(checks, kMostChecks);
                 if (!taken) {
                   return respond(error_response(
                       503, "too_many_checks", "other sweeps are being checked: try again soon"));

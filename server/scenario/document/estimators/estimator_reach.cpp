@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "vo_bridges/lcm/lcm_options.hpp"
+
 namespace overfly::server {
 namespace {
 
@@ -21,6 +23,11 @@ bool is_trusted(const EstimatorSpec& spec, const Trusted& trusted, const Field& 
   if (field(spec) == field(EstimatorSpec())) return true;
   return any_estimator(trusted,
                        [&](const EstimatorSpec& known) { return field(spec) == field(known); });
+}
+
+/// As a document with any field of `lcm` has it, in which the default is filled in.
+std::string lcm_url_of(const EstimatorSpec& spec) {
+  return spec.lcm_url.empty() ? LcmEstimatorOptions().url : spec.lcm_url;
 }
 
 /// Text with a slash may name a file that the estimator then reads, such as a vocabulary or a
@@ -80,7 +87,7 @@ Status check_reach(const Scenario& scenario, const Trusted& trusted) {
     const char* field = nullptr;
     if (!is_trusted(spec, trusted, [](const auto& s) { return s.command; })) field = "command";
     if (!is_trusted(spec, trusted, [](const auto& s) { return s.listen; })) field = "listen";
-    if (!is_trusted(spec, trusted, [](const auto& s) { return s.lcm_url; })) field = "lcm.url";
+    if (!is_trusted(spec, trusted, lcm_url_of)) field = "lcm.url";
     if (!is_trusted(spec, trusted, [](const auto& s) { return s.ros1.master_uri; })) {
       field = "ros1.master_uri";
     }

@@ -92,6 +92,21 @@ TEST_F(UploadSetTest, IsNotDeletedWithOneOfItsPieces) {
   EXPECT_EQ(get("").json().at("logs").size(), 1U);
 }
 
+/// Saved calibrations are in the same folder as uploads.
+TEST_F(UploadSetTest, DoesNotMixWithSavedCalibrations) {
+  Files files = flight();
+  files[0].first = "calibrations.json";
+  EXPECT_EQ(send(files).status, 400);
+  const fs::path saved = server_.folder() / "uploads" / "calibrations";
+  fs::create_directories(saved);
+  write_text(saved / "calibrations.json", "{}");
+  write_text(saved / "front.json", "{}");
+  EXPECT_NE(ask(server_.port(), "DELETE", "/api/v1/logs/uploads%2Fcalibrations%2Fcalibrations.json")
+                .status,
+            204);
+  EXPECT_TRUE(fs::exists(saved / "front.json"));
+}
+
 TEST_F(UploadSetTest, IsOneLog) {
   const Answer sent = send(flight());
   ASSERT_EQ(sent.status, 201) << sent.body;
