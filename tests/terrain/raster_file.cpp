@@ -50,6 +50,11 @@ void fill(GDALDataset& dataset, const RasterFile& raster) {
                            nullptr) == CE_None,
               "cannot write values");
     }
+    if (raster.alpha_band == band) out.SetColorInterpretation(GCI_AlphaBand);
+    if (raster.alpha_band > 0 && band <= 3) {
+      constexpr GDALColorInterp kColours[] = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand};
+      out.SetColorInterpretation(kColours[band - 1]);
+    }
     if (!raster.unit.empty()) out.SetUnitType(raster.unit.c_str());
     if (raster.nodata) out.SetNoDataValue(*raster.nodata);
   }

@@ -19,7 +19,8 @@ struct RasterFile {
   std::string crs = "EPSG:32616";  ///< empty = none
   /// GDAL's affine transform; empty = none.
   std::optional<std::array<double, 6>> transform{{583000.0, 2.0, 0.0, 4357000.0, 0.0, -2.0}};
-  std::string unit;  ///< of the values
+  int alpha_band = 0;  ///< transparency; bands 1 to 3 are then red, green and blue. 0 = none
+  std::string unit;    ///< of the values
   std::optional<double> nodata;
   std::function<double(int x, int y, int band)> value;  ///< empty = a texture in [0, 255]
   std::vector<std::string> options;                     ///< of the driver: "QUALITY=100"

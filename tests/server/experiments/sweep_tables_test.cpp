@@ -130,12 +130,12 @@ TEST_F(SweepTablesTest, HighlightsTheLowestAndMarksCellsWithoutACountingFlight) 
   const std::string text = markdown();
   // Convention paper: held errors, Euler norm, also of the lost flight.
   EXPECT_THAT(text,
-              HasSubstr("| 50.0 | 4.00 | **2.00** |  | **0.150** | 0.450 |  |\n"
-                        "| 100.0 | X | **8.00** |  | X | **0.300** |  |\n"));
+              HasSubstr("| 50 | 4.00 | **2.00** |  | **0.150** | 0.450 |  |\n"
+                        "| 100 | X | **8.00** |  | X | **0.300** |  |\n"));
   // Convention sim3: only the completed flights.
   EXPECT_THAT(text,
-              HasSubstr("| 50.0 | 0.200 | **0.100** |  | **0.100** | 0.300 |  |\n"
-                        "| 100.0 | X | X |  | X | X |  |\n"));
+              HasSubstr("| 50 | 0.200 | **0.100** |  | **0.100** | 0.300 |  |\n"
+                        "| 100 | X | X |  | X | X |  |\n"));
   EXPECT_THAT(text, HasSubstr("Height [m]"));
   EXPECT_THAT(text, HasSubstr("one rotation [deg]"));
   EXPECT_THAT(text, HasSubstr("# Made \\| up"));
@@ -147,9 +147,9 @@ TEST_F(SweepTablesTest, MarksErrorsThatTheAlignmentDoesNotDetermine) {
   hold.moves = false;
   add(hold);
   const std::string text = markdown();
-  EXPECT_THAT(text, HasSubstr("| 50.0 | **4.00** |  | 6.00 | **0.150** |  | 0.300 |\n"));
-  EXPECT_THAT(text, HasSubstr("| 50.0 | **0.200** |  | - | **0.100** |  | - |\n"));
-  EXPECT_THAT(text, HasSubstr("| 50.0 | hold | 1 COMPLETED | 1 | 100 [21, 100] | - | - |"));
+  EXPECT_THAT(text, HasSubstr("| 50 | **4.00** |  | 6.00 | **0.150** |  | 0.300 |\n"));
+  EXPECT_THAT(text, HasSubstr("| 50 | **0.200** |  | - | **0.100** |  | - |\n"));
+  EXPECT_THAT(text, HasSubstr("| 50 | hold | 1 COMPLETED | 1 | 100 [21, 100] | - | - |"));
 }
 
 TEST_F(SweepTablesTest, AnXEntersNoMedian) {
@@ -184,8 +184,8 @@ TEST_F(SweepTablesTest, MarksEstimatorsThatAreOverconfident) {
   EXPECT_EQ(honesty.overconfident, 2U);
   EXPECT_EQ(honesty.too_cautious, 0U);
   EXPECT_DOUBLE_EQ(honesty.deviation_ratio->quartiles.median, 2.0);
-  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 3 | 2 | 0 | 2.00 [1.50, 2.00] |\n"));
-  EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | 0 |")));
+  EXPECT_THAT(markdown(), HasSubstr("| 50 | one | 3 | 2 | 0 | 2.00 [1.50, 2.00] |\n"));
+  EXPECT_THAT(markdown(), Not(HasSubstr("| 50 | two | 0 |")));
   EXPECT_THAT(csv_from(made), HasSubstr("COMPLETED:3,3,2,0,2,,,,,,,0\n"));
   EXPECT_EQ(
       json_from(made).at("rows").at(0).at("errors").at("sim3").at("honesty").at("overconfident"),
@@ -209,8 +209,8 @@ TEST_F(SweepTablesTest, ShowsTheDriftBetweenFixesOfLongFlights) {
   EXPECT_DOUBLE_EQ(drift[0].worst_m, 9.5);
   EXPECT_FALSE(drift[1].median_m);
   EXPECT_THAT(markdown(), HasSubstr("Drift between position fixes, convention sim3"));
-  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | one | 4.00 [3.50, 4.50] / 9.50 | - | - |\n"));
-  EXPECT_THAT(markdown(), Not(HasSubstr("| 50.0 | two | -")));
+  EXPECT_THAT(markdown(), HasSubstr("| 50 | one | 4.00 [3.50, 4.50] / 9.50 | - | - |\n"));
+  EXPECT_THAT(markdown(), Not(HasSubstr("| 50 | two | -")));
   EXPECT_THAT(csv_from(made), HasSubstr("fix_drift_1000m_median,fix_drift_1000m_worst"));
   EXPECT_THAT(csv_from(made), HasSubstr(",4,9.5,,,,,0\n"));
   const Json json = json_from(made).at("rows").at(0).at("errors").at("sim3").at("fix_drift");
@@ -228,7 +228,7 @@ TEST_F(SweepTablesTest, HasNoHonestyWithoutCovariances) {
 TEST_F(SweepTablesTest, TiesAreHighlightedTogether) {
   add({"one", 50, 0, 1.0, 0.1});
   add({"two", 50, 0, 1.0, 0.1});
-  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | **2.00** | **2.00** |"));
+  EXPECT_THAT(markdown(), HasSubstr("| 50 | **2.00** | **2.00** |"));
 }
 
 TEST_F(SweepTablesTest, MarksEstimatorsThatDoNotBeatABaseline) {
@@ -236,7 +236,7 @@ TEST_F(SweepTablesTest, MarksEstimatorsThatDoNotBeatABaseline) {
   add({"two", 50, 0, 1.0, 0.4});
   add({"hold", 50, 0, 4.0, 0.3, Outcome::kCompleted, "baseline_hold"});
   const std::string text = markdown();
-  EXPECT_THAT(text, HasSubstr("| 50.0 | 10.0 † | **2.00** | 8.00 | **0.150** | 0.600 † | 0.450 |"));
+  EXPECT_THAT(text, HasSubstr("| 50 | 10.0 † | **2.00** | 8.00 | **0.150** | 0.600 † | 0.450 |"));
   EXPECT_THAT(text, HasSubstr("the best baseline of the cell is at least as good"));
 }
 
@@ -385,7 +385,7 @@ TEST_F(SweepTablesTest, ComparesTheScaleAtTheStartWithThatOfTheWholeFlight) {
   EXPECT_EQ(made.rows[0].start_scale_percent->flights, 2U);
   EXPECT_FALSE(made.rows.at(1).start_scale_percent) << "of a flight that was not completed";
   EXPECT_THAT(markdown(), HasSubstr("## Scale at the start"));
-  EXPECT_THAT(markdown(), HasSubstr("| 50.0 | -6.71 | - |"));
+  EXPECT_THAT(markdown(), HasSubstr("| 50 | -6.71 | - |"));
   EXPECT_THAT(csv_from(made), HasSubstr("start_scale_percent_median\n"));
   EXPECT_THAT(csv_from(made), HasSubstr(",-6.7"));
   const Json rows = json_from(made).at("rows");

@@ -160,8 +160,8 @@ TEST_F(WhatFilesSay, OneLongCompressedStripIsImagery) {
 TEST_F(WhatFilesSay, TransparencyNextToMoreThanThreeBandsIsNoImagery) {
   RasterFile picture;
   picture.bands = 5;
-  picture.options = {"PHOTOMETRIC=RGB", "ALPHA=YES"};
-  picture.value = [](int x, int, int band) { return band == 4 ? (x < 32 ? 255.0 : 0.0) : 90.0; };
+  picture.alpha_band = 5;
+  picture.value = [](int x, int, int band) { return band == 5 ? (x < 32 ? 255.0 : 0.0) : 90.0; };
   testing::write_raster(path("five.tif"), picture);
   WorldSpec spec;
   spec.imagery.emplace_back().file = path("five.tif");

@@ -145,7 +145,9 @@ TEST(VehicleAnswers, NameWhomTheyAnswer) {
                                                         {MessageId::kCommandAck, 8},
                                                         {MessageId::kMissionItem, 32},
                                                         {MessageId::kMissionItemInt, 32}};
-  for (const auto& [id, at] : messages) {
+  for (const auto& message : messages) {
+    const MessageId id = message.first;
+    const std::size_t at = message.second;
     const auto is_ours = [&](std::uint8_t system, std::uint8_t component) {
       const auto payload = PayloadWriter(40).put(at, system).put(at + 1, component).bytes();
       const auto number = static_cast<std::uint32_t>(id);
