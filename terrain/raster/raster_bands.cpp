@@ -23,19 +23,12 @@ bool has_mask(GDALDataset& dataset, const RasterBands& bands) {
   });
 }
 
-CPLErr read_values(GDALRasterBand& band, int x, int y, const Image& window, float* values) {
-  return band.RasterIO(GF_Read,
-                       x,
-                       y,
-                       window.width_px,
-                       window.height_px,
-                       values,
-                       window.width_px,
-                       window.height_px,
-                       GDT_Float32,
-                       0,
-                       0,
-                       nullptr);
+/// Reads the texels of a window, which has the size of `size`, into `data` of the given type.
+CPLErr read_window(
+    GDALRasterBand& band, int x, int y, const Image& size, GDALDataType type, void* data) {
+  const int width = size.width_px;
+  const int height = size.height_px;
+  return band.RasterIO(GF_Read, x, y, width, height, data, width, height, type, 0, 0, nullptr);
 }
 
 /// The smallest value of a band of transparency that counts as opaque.
@@ -211,7 +204,7 @@ CPLErr read_rescaled(GDALDataset& dataset,
   std::vector<float> values(has_value.size());
   for (int c = 0; c < 3; ++c) {
     const CPLErr outcome =
-        read_values(*dataset.GetRasterBand(bands.rgb[c]), x, y, rgb, values.data());
+        read_window(*dataset.GetRasterBand(bands.rgb[c]), x, y, rgb, GDT_Float32, values.data());
     if (outcome != CE_None) return outcome;
     const double factor = 255.0 / (bands.high - bands.low);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -234,7 +227,7 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
   for (int c = 0; c < 3; ++c) {
     if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
     const CPLErr outcome =
-        read_values(*dataset.GetRasterBand(bands.rgb[c]), x, y, valid, values.data());
+        read_window(*dataset.GetRasterBand(bands.rgb[c]), x, y, valid, GDT_Float32, values.data());
     if (outcome != CE_None) return outcome;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] != nodata) differs[i] = 1;
@@ -249,7 +242,7 @@ CPLErr read_nodata(GDALDataset& dataset, const RasterBands& bands, int x, int y,
 CPLErr read_alpha(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   GDALRasterBand& alpha = *dataset.GetRasterBand(bands.alpha);
   std::vector<float> values(valid.data.size());
-  const CPLErr outcome = read_values(alpha, x, y, valid, values.data());
+  const CPLErr outcome = read_window(alpha, x, y, valid, GDT_Float32, values.data());
   if (outcome != CE_None) return outcome;
   const float least = least_opaque(alpha.GetRasterDataType());
   for (std::size_t i = 0; i < values.size(); ++i) valid.data[i] = values[i] >= least ? 255 : 0;
@@ -266,18 +259,8 @@ CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, I
     if (c > 0 && bands.rgb[c] == bands.rgb[0]) break;
     GDALRasterBand* band = dataset.GetRasterBand(bands.rgb[c]);
     const int flags = band->GetMaskFlags();
-    const CPLErr outcome = band->GetMaskBand()->RasterIO(GF_Read,
-                                                         x,
-                                                         y,
-                                                         valid.width_px,
-                                                         valid.height_px,
-                                                         one.data.data(),
-                                                         valid.width_px,
-                                                         valid.height_px,
-                                                         GDT_Byte,
-                                                         0,
-                                                         0,
-                                                         nullptr);
+    const CPLErr outcome =
+        read_window(*band->GetMaskBand(), x, y, valid, GDT_Byte, one.data.data());
     if (outcome != CE_None) return outcome;
     for (std::size_t i = 0; i < one.data.size(); ++i) {
       if (one.data[i] >= 128) valid.data[i] = 255;
@@ -289,18 +272,8 @@ CPLErr read_mask(GDALDataset& dataset, const RasterBands& bands, int x, int y, I
 
 void mask_palette(GDALDataset& dataset, const RasterBands& bands, int x, int y, Image& valid) {
   Image index(valid.width_px, valid.height_px, 1);
-  if (dataset.GetRasterBand(1)->RasterIO(GF_Read,
-                                         x,
-                                         y,
-                                         index.width_px,
-                                         index.height_px,
-                                         index.data.data(),
-                                         index.width_px,
-                                         index.height_px,
-                                         GDT_Byte,
-                                         0,
-                                         0,
-                                         nullptr) != CE_None) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  if (read_window(band, x, y, valid, GDT_Byte, index.data.data()) != CE_None) {
     return;
   }
   for (std::size_t i = 0; i < index.data.size(); ++i) {

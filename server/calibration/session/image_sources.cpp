@@ -27,8 +27,7 @@ std::string image_title(const char* what, std::int64_t number) {
 /// The server's folders and temporary files are no business of its clients.
 Error error_for_client(const Error& error) {
   if (error.code == ErrorCode::kIo) {
-    return {error.code,
-            "the server cannot read or store the image: are its disk full or its rights missing?"};
+    return {error.code, "the server cannot read or store the image: is its disk full?"};
   }
   return {ErrorCode::kUnreadable, "cannot be read as PNG, JPEG, PGM or PPM"};
 }
