@@ -119,5 +119,27 @@ TEST(AttitudeControl, StartsFromTheTrimWithoutATransient) {
   }
 }
 
+TEST(AttitudeControl, UsesASurfaceToBothOfItsEnds) {
+  MissionSetup setup = testing::setup_of("piper_cub_third");
+  setup.airframe.elevator.min_rad = rad_from_deg(-10.0);
+  setup.airframe.elevator.max_rad = rad_from_deg(25.0);
+  FlightState state;
+  state.airspeed_m_s = setup.parameters.airspeed_cruise;
+  state.gravity_m_s2 = 9.81;
+  AttitudeControl held(setup.parameters, setup.airframe);
+  held.start_from({.elevator_rad = rad_from_deg(15.0)});
+  EXPECT_NEAR(deg_from_rad(held.update({}, state, 0.01).elevator_rad), 15.0, 1e-9);
+  AttitudeControl up(setup.parameters, setup.airframe);
+  AttitudeControl down(setup.parameters, setup.airframe);
+  dynamics::Controls highest;
+  dynamics::Controls lowest;
+  for (int i = 0; i < 2000; ++i) {
+    highest = up.update({0.0, 1.0}, state, 0.01);
+    lowest = down.update({0.0, -1.0}, state, 0.01);
+  }
+  EXPECT_NEAR(deg_from_rad(highest.elevator_rad), -10.0, 1e-9);
+  EXPECT_NEAR(deg_from_rad(lowest.elevator_rad), 25.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace overfly::autopilot

@@ -83,6 +83,9 @@ TEST(AirframeFile, FaultsNameFileFieldValueAndLimit) {
   EXPECT_THAT(complaint("/propulsion/battery_v", 100), HasSubstr("tips move at 385."));
   EXPECT_THAT(complaint("/propulsion/torque/zero", 0.1), HasSubstr("more thrust than torque"));
   EXPECT_THAT(complaint("/propulsion/thrust/zero", 0.2), HasSubstr("drive without power"));
+  EXPECT_THAT(complaint("/actuators/aileron/max_deg", 0),
+              HasSubstr("actuators.aileron: must move to both sides"));
+  EXPECT_EQ(complaint("/actuators/elevator/max_deg", 7), "") << "unlike min_deg";
   EXPECT_EQ(complaint("/mass_kg", 12.0), "");
 }
 

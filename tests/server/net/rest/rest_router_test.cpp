@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/net/http/error_response.hpp"
+#include "server/net/rest/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -24,6 +25,19 @@ RestRouter example() {
   router.add("DELETE", "/runs/{id}", echo);
   router.add("POST", "/runs/{id}/cancel", echo);
   return router;
+}
+
+TEST(RestSlots, AreFreeAgainWithTheLastCopy) {
+  const auto taken = std::make_shared<std::atomic<int>>(0);
+  auto first = take_slot(taken, 2);
+  const auto second = take_slot(taken, 2);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(take_slot(taken, 2), nullptr);
+  auto copy = first;
+  first.reset();
+  EXPECT_EQ(take_slot(taken, 2), nullptr) << "a copy holds it";
+  copy.reset();
+  EXPECT_NE(take_slot(taken, 2), nullptr);
 }
 
 TEST(RestRouter, MatchesPathsAndDecodesWhatTheyHold) {
