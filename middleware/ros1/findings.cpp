@@ -38,7 +38,7 @@ Findings findings() {
   const bool answers = ask_pid(*master, std::chrono::seconds(1)).ok();
   found.finding += answers ? "a master answers at " + uri : "no master at " + uri;
   const std::string own = variable("ROS_HOSTNAME") + variable("ROS_IP");
-  if (!own.empty()) found.finding += "; nodes are told to connect to " + own;
+  if (!own.empty()) found.finding += "; other nodes connect to " + own;
   if (!master->is_loopback() && own.empty()) {
     found.works = false;
     found.remedy =

@@ -1,4 +1,4 @@
-// Humble baselines: what an aircraft gets without visual odometry, or with the simplest one. An
+// Simple baselines: what an aircraft gets without visual odometry, or with the simplest one. An
 // estimator that does not beat them is of no use.
 #pragma once
 

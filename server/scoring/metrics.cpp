@@ -65,6 +65,7 @@ EstimatorMetrics estimator_metrics_from(const RunRecords& records,
   EstimatorMetrics metrics;
   metrics.type = estimator.type;
   metrics.test_estimator = is_test_estimator(estimator.type);
+  if (estimator.camera != kMainCamera) metrics.camera = records.camera_of(estimator).name;
   metrics.score = score_of(records, estimator);
   if (const auto initial = initial_frame(records, estimator)) metrics.map_id = initial->map_id;
   const EstimatorStatus counts = tally_of(records, estimator);
@@ -114,6 +115,13 @@ RunMetrics metrics_from(const RunRecords& records) {
     metrics.estimators[estimator.name] = estimator_metrics_from(records, estimator);
   }
   return metrics;
+}
+
+const CameraMetrics& RunMetrics::camera_of(const EstimatorMetrics& estimator) const {
+  for (std::size_t i = kMainCamera + 1; i < cameras.size(); ++i) {
+    if (cameras[i].name == estimator.camera) return cameras[i];
+  }
+  return cameras.at(kMainCamera);
 }
 
 std::map<std::string, std::string> never_ran(const RunMetrics& metrics) {

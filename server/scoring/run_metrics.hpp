@@ -47,6 +47,7 @@ struct FlightMetrics {
 struct EstimatorMetrics {
   std::string type;
   bool test_estimator = false;
+  std::string camera;  ///< whose images it gets; empty for the main camera
   evaluation::Score score;
   std::optional<int> map_id;  ///< the map that was scored; empty if it never tracked
   std::int64_t answered = 0;  ///< frames answered before the estimator ended
@@ -65,6 +66,9 @@ struct RunMetrics {
   std::vector<FrameRange> late_frame_ranges;
   FlightMetrics flight;
   std::map<std::string, EstimatorMetrics> estimators;  ///< by name
+
+  /// What the camera of an estimator saw; the main camera's where the file lacks that camera.
+  [[nodiscard]] const CameraMetrics& camera_of(const EstimatorMetrics& estimator) const;
 };
 
 }  // namespace overfly::server

@@ -259,6 +259,7 @@ EstimatorMetrics read_estimator_metrics(const FileField& field) {
   }
   take(field, "type", estimator.type);
   take(field, "test_estimator", estimator.test_estimator);
+  take(field, "camera", estimator.camera);
   take(field, "answered", estimator.answered);
   take(field, "crash", estimator.crash);
   take(field, "unanswered", estimator.unanswered);

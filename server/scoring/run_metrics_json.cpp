@@ -134,6 +134,7 @@ Json estimator_metrics_json(const EstimatorMetrics& estimator) {
   value["map_id"] = or_null(estimator.map_id);
   value["type"] = estimator.type;
   value["test_estimator"] = estimator.test_estimator;
+  if (!estimator.camera.empty()) value["camera"] = estimator.camera;
   value["answered"] = estimator.answered;
   value["crash"] = or_null(estimator.crash);
   value["unanswered"] = estimator.unanswered;

@@ -29,7 +29,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = {"mcmillan": "mcmillan_course.json", "builtin": "course.json"}
 NOISE = {"full_well_e": 10200, "gain_dn_per_e": 0.025, "read_noise_e": 60,
          "response": {"shape": "srgb"}}
-KEPT_FROM = "## What real motion costs"
+KEPT_FROM = "## Flown again"
 LIMITS = {"mcmillan": 0.25, "builtin": 0.5}  # of the Sim3 position RMSE [m]
 
 

@@ -9,7 +9,7 @@ Flies each entry of planted_causes.json: the base scenario with a few fields cha
 without one must succeed, and `explain` must name nothing. The result of each entry is written to
 RESULTS_FOLDER/NAME.json; entries that have a result are skipped. --table only prints the results.
 Exit code 0 = every planted flight failed and every other one succeeded, at least 18 of 20 planted
-causes were named rightly, and none in a flight that succeeded.
+causes were named correctly, and none in a flight that succeeded.
 """
 
 import argparse
@@ -105,7 +105,7 @@ def main():
     table(results)
     planted = [judged(result) for result in results if result["planted"]]
     innocent = [judged(result) for result in results if not result["planted"]]
-    print(f"\n{planted.count('right')} of {len(planted)} planted causes named rightly; "
+    print(f"\n{planted.count('right')} of {len(planted)} planted causes named correctly; "
           f"{innocent.count('WRONG')} of {len(innocent)} other flights wrong; "
           f"{sum(r['flights'] for r in results)} flights, "
           f"{sum(r['flight_s'] + r['explain_s'] for r in results):.0f} s")

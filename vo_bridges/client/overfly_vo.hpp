@@ -124,7 +124,7 @@ struct Answer {
   std::vector<std::array<float, 3>>
       map_points{};  ///< only if debug_wanted; in the frame of position
   /// Covariance of the pose's error, row by row: 36 values of position x, y, z and small rotations
-  /// about the fixed axes x, y, z of the frame of `position` [rad]; or the 9 of the position alone.
+  /// about the fixed axes x, y, z of the frame of `position` [rad]; or the 9 of the position only.
   /// Empty = not stated.
   std::vector<double> covariance{};
 };
@@ -339,7 +339,7 @@ class Connection {
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t n = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
       if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) throw std::runtime_error("the server is gone");
+      if (n <= 0) throw std::runtime_error("the server closed the connection");
       sent += static_cast<std::size_t>(n);
     }
   }
@@ -424,7 +424,7 @@ class Connection {
       message.msg_controllen = control.size();
       const ssize_t n = ::recvmsg(socket_, &message, MSG_CMSG_CLOEXEC);
       if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) throw std::runtime_error("the server is gone");
+      if (n <= 0) throw std::runtime_error("the server closed the connection");
       got += static_cast<std::size_t>(n);
       const cmsghdr* with = CMSG_FIRSTHDR(&message);
       if (with != nullptr && with->cmsg_type == SCM_RIGHTS) {
@@ -734,7 +734,7 @@ inline int run(Estimator& estimator, const char* address) {
       std::fprintf(stderr, "%s: %s\n", estimator.name().c_str(), failure.what());
       try {
         detail::log_line(connection, Level::kError, failure.what());
-      } catch (const std::exception&) {  // the server is gone: reported on stderr
+      } catch (const std::exception&) {  // the connection is closed: reported on stderr
       }
       estimator.connection_ = nullptr;
       return 1;

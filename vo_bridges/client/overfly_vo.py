@@ -84,7 +84,7 @@ class Answer:
     debug_image: tuple = None  # (width_px, height_px, channels 1 or 3, bytes), if debug_wanted
     map_points: list = ()  # of (x, y, z), in the frame of position, if debug_wanted
     # Of the pose's error, row by row or as rows: 6 x 6 of position x, y, z and small rotations about
-    # the fixed axes x, y, z of the frame of position [rad], or 3 x 3 of the position alone.
+    # the fixed axes x, y, z of the frame of position [rad], or 3 x 3 of the position only.
     covariance: list = ()  # empty = not stated
 
 
@@ -195,7 +195,7 @@ class _Connection:
             room = socket.CMSG_SPACE(array.array("i").itemsize)
             n, with_it, _, _ = self._socket.recvmsg_into([view[got:]], room)
             if n == 0:
-                raise ConnectionError("the server is gone")
+                raise ConnectionError("the server closed the connection")
             got += n
             for _, kind, descriptor in with_it:
                 if kind == socket.SCM_RIGHTS:
@@ -335,5 +335,5 @@ def run(estimator, address=None):
         try:
             estimator.log(ERROR, f"{type(failure).__name__}: {failure}")
         except OSError:
-            pass  # the server is gone: reported on stderr
+            pass  # the connection is closed: reported on stderr
         raise

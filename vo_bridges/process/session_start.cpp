@@ -65,7 +65,7 @@ Status Session::connect(Listener listener, Clock::time_point deadline) {
       return {};
     }
     if (child_gone) {
-      return Error{ErrorCode::kInternal, "the estimator ended before it said hello"};
+      return Error{ErrorCode::kInternal, "the estimator ended before it sent HELLO"};
     }
   }
   return Error{ErrorCode::kInternal,

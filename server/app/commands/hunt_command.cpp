@@ -55,14 +55,26 @@ void replace(Json& document, const char* name, const std::optional<T>& value) {
   if (value) document[name] = *value;
 }
 
+/// Replaces the axis of the same path, or adds one. Other types are left to the check of the
+/// document.
+void put_axis(Json& axes, const Json& axis) {
+  if (!axes.is_array()) return;
+  for (Json& old : axes) {
+    if (old.is_object() && old.value("path", Json()) == axis.at("path")) {
+      old = axis;
+      return;
+    }
+  }
+  axes.push_back(axis);
+}
+
 Result<experiments::Hunt> hunt_from(const HuntArguments& arguments) {
   Result<Json> document = experiments::read_hunt_document(arguments.file);
   if (!document) return document.error();
   for (const std::string& text : arguments.axes) {
     const Result<Json> axis = experiments::parse_axis(text);
     if (!axis) return axis.error();
-    Json& axes = (*document)["axes"];
-    if (axes.is_array()) axes.push_back(*axis);
+    put_axis((*document)["axes"], *axis);
   }
   const auto changes = server::parse_overrides(arguments.changes);
   if (!changes) return changes.error();

@@ -44,7 +44,7 @@ void add_found(const Explanation& explanation, std::vector<std::string>& sentenc
                         " the estimator survives, so that this cause is necessary." + with);
   }
   if (!explanation.together.empty()) {
-    sentences.push_back("None of them is enough alone: the failure takes " +
+    sentences.push_back("None of them is sufficient by itself: the failure takes " +
                         list_words(explanation.together, words_for) + " together.");
   }
   if (!explanation.not_changed.empty()) {

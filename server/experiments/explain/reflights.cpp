@@ -122,13 +122,11 @@ void Reflights::take_results(const Prepared& prepared, const std::string& failur
     } else {
       flight.score = without_poses(scored->second.score);
       flight.survived = survived(flight.score, flight.part);
+      const CameraMetrics& seen = metrics->camera_of(scored->second);
+      flight.texels_per_pixel_median = seen.texture.texels_per_pixel_median;
+      flight.texture_limited = seen.texture.limited;
+      flight.void_fraction_max = seen.void_fraction_max;
     }
-    const std::size_t camera =
-        std::min(prepared.scenario.estimators.front().camera, metrics->cameras.size() - 1);
-    const CameraMetrics& seen = metrics->cameras[camera];
-    flight.texels_per_pixel_median = seen.texture.texels_per_pixel_median;
-    flight.texture_limited = seen.texture.limited;
-    flight.void_fraction_max = seen.void_fraction_max;
   }
   flights_.push_back(std::move(flight));
   if (options_.progress) options_.progress(flights_.size(), flights_.back().name);

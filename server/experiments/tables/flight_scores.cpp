@@ -74,7 +74,7 @@ void add_flight(const SweepResult& result, RunReader& runs, SweepScores& scores)
   flight.type = estimator->second.type;
   flight.run = result.run;
   flight.path_length_m = metrics->flight.path_length_m;
-  flight.texture_limited = metrics->cameras.front().texture.limited;
+  flight.texture_limited = metrics->camera_of(estimator->second).texture.limited;
   flight.outcome = result.outcome;
   flight.score = estimator->second.score;
   const auto& names = scores.estimators;

@@ -1,4 +1,4 @@
-// Errors that somebody has published for the cells of a sweep, to be shown beside one's own.
+// Errors that somebody has published for the cells of a sweep, to be shown next to one's own.
 #pragma once
 
 #include <filesystem>

@@ -77,6 +77,7 @@ RunMetrics full_metrics() {
   score.unavailable[AlignmentMode::kInitScale] = "no depth";
   metrics.estimators["f"] = estimator;
   metrics.estimators["p"].test_estimator = true;
+  metrics.estimators["p"].camera = "tilted";
   return metrics;
 }
 
@@ -164,6 +165,26 @@ TEST(RunMetricsJson, InvalidFieldIsNamed) {
   overfly::testing::write_text(metrics_file(folder.path()), "{}");
   EXPECT_THAT(read_run_metrics(folder.path()).error().message,
               HasSubstr("metrics.json: camera: is missing"));
+}
+
+TEST(RunMetricsJson, AnEstimatorFindsItsCameraByName) {
+  RunMetrics metrics = full_metrics();
+  metrics.cameras.push_back({});
+  metrics.cameras.back().name = "ahead";
+  metrics.cameras.back().texture.limited = true;
+  metrics.estimators["a"].camera = "ahead";
+  metrics.estimators["gone"].camera = "another";
+  // In the file the further cameras are ordered by name.
+  const Result<RunMetrics> read = run_metrics_from(json_from(metrics));
+  ASSERT_TRUE(read) << read.error().message;
+  const auto camera_of = [&](const std::string& name) -> const CameraMetrics& {
+    return read->camera_of(read->estimators.at(name));
+  };
+  EXPECT_EQ(camera_of("f").frames, 21);
+  EXPECT_EQ(camera_of("p").name, "tilted");
+  EXPECT_FALSE(camera_of("p").texture.limited);
+  EXPECT_TRUE(camera_of("a").texture.limited);
+  EXPECT_EQ(camera_of("gone").frames, 21) << "the main camera's, if the file lacks that camera";
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(ProcessStart, AChildThatEndsAtOnceIsQuoted) {
   const Error error = start_error(scripted("no_start"));
   EXPECT_EQ(error.code, ErrorCode::kInternal);
   EXPECT_THAT(error.message,
-              AllOf(HasSubstr("ended before it said hello"),
+              AllOf(HasSubstr("ended before it sent HELLO"),
                     HasSubstr("exited with code 3"),
                     HasSubstr("ORBvoc.txt: no such file")));
 }

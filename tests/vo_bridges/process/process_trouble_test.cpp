@@ -97,7 +97,7 @@ TEST_F(ProcessTrouble, ManyPosesThatAreNoneEndTheFlight) {
   EXPECT_THAT(gone.error().message,
               AllOf(HasSubstr("30 answers in a row had no usable pose"),
                     HasSubstr("for frame 30: the position is not finite"),
-                    HasSubstr("it last said: camera0 64x48")));
+                    HasSubstr("its last output: camera0 64x48")));
 }
 
 TEST_F(ProcessTrouble, TheLastWordsAreItsOwnAndNotThoseAboutItsEnd) {
@@ -112,7 +112,7 @@ TEST_F(ProcessTrouble, TheLastWordsAreItsOwnAndNotThoseAboutItsEnd) {
   const auto estimator = started(options);
   const Result<VoEstimate> answer = estimator->track(ground_frames(1, 1.0, 1.0, 64, 48)[0]);
   ASSERT_FALSE(answer.ok());
-  EXPECT_THAT(answer.error().message, ::testing::EndsWith("; it last said: the map is empty"));
+  EXPECT_THAT(answer.error().message, ::testing::EndsWith("; its last output: the map is empty"));
   EXPECT_EQ(testing::read_text(options.output_file), "the map is empty\n");
 }
 
@@ -170,7 +170,7 @@ TEST_F(ProcessTrouble, AHangingEstimatorIsGivenUpAfterThreeTimeouts) {
   ASSERT_FALSE(estimates[4].ok());
   EXPECT_EQ(estimates[4].error().code, ErrorCode::kTimeout);
   EXPECT_THAT(estimates[4].error().message,
-              HasSubstr("hangs: frame 2 was not answered within 1.5 s; it last said: camera0"));
+              HasSubstr("hangs: frame 2 was not answered within 1.5 s; its last output: camera0"));
   EXPECT_FALSE(estimates[5].ok());
   EXPECT_FALSE(alive(pid));
 }

@@ -95,10 +95,10 @@ std::vector<std::string> ChildOutput::take_lines() {
 
 std::string ChildOutput::last_words() const {
   const std::lock_guard lock(mutex_);
-  if (last_.empty()) return "; it said nothing";
+  if (last_.empty()) return "; it printed nothing";
   std::string text;
   for (const std::string& line : last_) {
-    text += (text.empty() ? "; it last said: " : " | ") + printable(line, 300);
+    text += (text.empty() ? "; its last output: " : " | ") + printable(line, 300);
   }
   return text;
 }

@@ -39,7 +39,7 @@ class ChildOutput {
 
   /// The lines since the last call. If lines were dropped, the first line gives their number.
   [[nodiscard]] std::vector<std::string> take_lines();
-  /// "; it last said: ..." with the last lines, or a note that there was no output.
+  /// "; its last output: ..." with the last lines, or a note that there was no output.
   [[nodiscard]] std::string last_words() const;
 
  private:

@@ -42,11 +42,27 @@ Status check_coordinated(const Json& course) {
   return {};
 }
 
+/// What the autopilot of an airframe cannot have: its limits of RLL2SRV_RMAX and ROLL_LIMIT_DEG.
+Status check_limits_of_autopilot(const Json& course) {
+  constexpr double kLeastRollRateDegS = 1.0;
+  constexpr double kLeastBankDeg = 5.0;
+  const auto check = [&](const char* field, double least, const char* unit) -> Status {
+    const Json& value = course.at(field);
+    if (value.get<double>() >= least) return {};
+    return Error{ErrorCode::kInvalidArgument,
+                 "flight.course." + std::string(field) + " = " + value.dump() +
+                     ": must be at least " + Json(least).dump() + " " + unit + " with an airframe"};
+  };
+  if (Status rate = check("roll_rate_max_deg_s", kLeastRollRateDegS, "deg/s"); !rate) return rate;
+  return check("bank_max_deg", kLeastBankDeg, "deg");
+}
+
 Status read_dynamics(Json& course, const FileResolver& files, Scenario& scenario) {
   if (course.at("dynamics") == kCoordinated) return check_coordinated(course);
   Result<AirframeChoice> airframe =
       read_airframe_choice(course, "dynamics", "flight.course", files);
   if (!airframe) return airframe.error();
+  if (Status limits = check_limits_of_autopilot(course); !limits) return limits;
   scenario.course_dynamics =
       CourseDynamics{std::move(*airframe), course.at("terrain_following").get<bool>()};
   return {};

@@ -27,7 +27,7 @@ export interface CalibrationPage {
   solution: CalibrationSolution | null;
   /** Views without which an estimate was asked for; null = those that the session leaves out. */
   leftOut: ReadonlySet<number> | null;
-  /** The view shown beside the newest image; null = the last one. */
+  /** The view shown next to the newest image; null = the last one. */
   selected: number | null;
   detail: ViewDetail | null;
   /** Name proposed for the result. */
