@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
 import { browserMissing, openBrowser } from './support/browser.mjs';
 import { Dashboard } from './support/dashboard.mjs';
+import { openPrefixProxy } from './support/prefix_proxy.mjs';
 import { makeRunsFolder, serverMissing, startServer } from './support/server.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -87,6 +88,27 @@ describe('the token', { skip, timeout: 120_000 }, () => {
     await chip.click();
     await browser.page.getByLabel('Token').fill(server.token);
     await browser.page.keyboard.press('Enter');
+    await untilOpen();
+  });
+
+  step('opens the dashboard behind a proxy under a path of its own', async () => {
+    const proxy = await openPrefixProxy(server.port, '/overfly');
+    try {
+      await browser.page.context().clearCookies();
+      await browser.page.goto(`${proxy.url}/?token=${server.token}#run=none`);
+      await untilOpen();
+      assert.equal(browser.page.url().split('#')[0], `${proxy.url}/`);
+      const [cookie] = await browser.page.context().cookies();
+      assert.equal(cookie.path, '/overfly');
+      await browser.page.reload();
+      await untilOpen();
+      await dashboard.until(
+        () => document.querySelector('[data-panel=launch] select')?.options.length > 0,
+      );
+    } finally {
+      await proxy.close();
+    }
+    await browser.page.goto(`${server.url}/?token=${server.token}`);
     await untilOpen();
   });
 

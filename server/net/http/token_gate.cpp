@@ -63,11 +63,13 @@ HttpResponse token_refusal(const HttpRequest& request, bool wrong) {
   return response;
 }
 
-/// Redirects to the same page, never to another host: a browser reads "//host" and "/\host" as one.
+/// Redirects to the same page, relative to it: the path in the browser's address may begin with a
+/// prefix that a proxy has removed. Never leads to another host: "./" comes first, and a browser
+/// reads "\" as "/".
 std::string location_of(const std::string& target) {
-  const bool is_local =
-      target.starts_with('/') && !(target.size() > 1 && (target[1] == '/' || target[1] == '\\'));
-  return is_local ? target : "/";
+  const std::size_t query = std::min(target.find('?'), target.size());
+  const std::size_t slash = target.find_last_of("/\\", query == 0 ? 0 : query - 1);
+  return "./" + target.substr(slash == std::string::npos ? query : slash + 1);
 }
 
 }  // namespace
@@ -108,9 +110,10 @@ std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
   response.headers.emplace_back("Location", location_of(request->target));
   response.headers.emplace_back("Cache-Control", "no-store");
   if (by_query) {
-    response.headers.emplace_back("Set-Cookie",
-                                  token_cookie_name(request->header("host")) + "=" + token_ +
-                                      "; Path=/; HttpOnly; SameSite=Strict");
+    // Without a path the cookie is for the folder of the address in the browser, with its prefix.
+    response.headers.emplace_back(
+        "Set-Cookie",
+        token_cookie_name(request->header("host")) + "=" + token_ + "; HttpOnly; SameSite=Strict");
   }
   return response;
 }

@@ -119,9 +119,9 @@ TEST(TokenGate, SendsABrowserOnToTheAddressWithoutTheToken) {
   const auto response = TokenGate(kGateToken).check(&request);
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, 303);
-  EXPECT_EQ(header(*response, "Location"), "/map?a=1");
+  EXPECT_EQ(header(*response, "Location"), "./map?a=1");
   EXPECT_EQ(header(*response, "Set-Cookie"),
-            std::string("overfly_8480=") + kGateToken + "; Path=/; HttpOnly; SameSite=Strict");
+            std::string("overfly_8480=") + kGateToken + "; HttpOnly; SameSite=Strict");
   EXPECT_EQ(header(*response, "Cache-Control"), "no-store");
 }
 
@@ -138,11 +138,18 @@ TEST(TokenGate, KnowsAPastedAddressAndForgetsAnOldToken) {
 }
 
 TEST(TokenGate, NeverRedirectsToAnotherHost) {
-  for (const char* path : {"//evil.example/", "/\\evil.example/", "http://evil.example/"}) {
+  for (const char* path : {"//evil.example/", "/\\evil.example/", "http://evil.example/", "/"}) {
     HttpRequest request = get_from_host(std::string(path) + "?token=" + kGateToken);
     const auto response = TokenGate(kGateToken).check(&request);
     ASSERT_TRUE(response) << path;
-    EXPECT_EQ(header(*response, "Location"), "/") << path;
+    EXPECT_EQ(header(*response, "Location"), "./") << path;
+  }
+  for (const char* path : {"//evil.example", "/\\evil.example", "/a/evil.example"}) {
+    HttpRequest request =
+        get_from_host(std::string(path) + "?to=//evil.example/b&token=" + kGateToken);
+    const auto response = TokenGate(kGateToken).check(&request);
+    ASSERT_TRUE(response) << path;
+    EXPECT_EQ(header(*response, "Location"), "./evil.example?to=//evil.example/b") << path;
   }
 }
 
