@@ -88,7 +88,7 @@ std::vector<bool> held_frames(const std::vector<FlownFrame>& flown) {
     const FlownFrame& after = last ? flown[i] : flown[i + 1];
     const bool in_one_map = has_pose(before) && before.sample.map_id == after.sample.map_id;
     if (!in_one_map || !(last || has_pose(after))) continue;
-    if (after.sample.t_ns - before.sample.t_ns >= kGapNs) continue;
+    if (after.t_ns - before.t_ns >= kGapNs) continue;
     std::fill(held.begin() + static_cast<std::ptrdiff_t>(begin),
               held.begin() + static_cast<std::ptrdiff_t>(i) + 1,
               true);
@@ -103,27 +103,24 @@ std::optional<double> loss_time_s(const std::vector<FlownFrame>& flown,
   std::optional<double> begin_s;
   bool lost = false;
   for (std::size_t i = first; i < flown.size(); ++i) {
-    if (!held[i] && !lost && (!begin_s || !held.back())) begin_s = s_from_ns(flown[i].sample.t_ns);
+    if (!held[i] && !lost && (!begin_s || !held.back())) begin_s = s_from_ns(flown[i].t_ns);
     lost = !held[i];
   }
   return begin_s;
 }
 
-/// Time of the first sample in a later map than that of the first tracked frame.
+/// Time of the first frame in a later map than that of the first tracked frame.
 std::optional<double> reset_time_s(const std::vector<FlownFrame>& flown, std::size_t first) {
   for (std::size_t i = first; i < flown.size(); ++i) {
-    if (flown[i].sample.map_id != flown[first].sample.map_id) {
-      return s_from_ns(flown[i].sample.t_ns);
-    }
+    if (flown[i].sample.map_id != flown[first].sample.map_id) return s_from_ns(flown[i].t_ns);
   }
   return std::nullopt;
 }
 
 bool starts_late(const std::vector<FlownFrame>& flown, std::size_t first) {
-  const std::int64_t begin_ns = flown.front().sample.t_ns;
-  const std::int64_t share_ns = (flown.back().sample.t_ns - begin_ns) / kLateStartShare;
-  return flown[first].sample.t_ns - begin_ns >
-         std::clamp(share_ns, kShortestLateStartNs, kLateStartNs);
+  const std::int64_t begin_ns = flown.front().t_ns;
+  const std::int64_t share_ns = (flown.back().t_ns - begin_ns) / kLateStartShare;
+  return flown[first].t_ns - begin_ns > std::clamp(share_ns, kShortestLateStartNs, kLateStartNs);
 }
 
 }  // namespace
@@ -168,14 +165,16 @@ std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate, const Option
     missing.sample.frame = frame.frame;
     missing.sample.t_ns = frame.t_ns;
     missing.sample.map_id = map_id;
+    missing.t_ns = frame.t_ns;
     flown.push_back(missing);
   };
   auto next = options.flight.begin();
   for (const EstimateSample& sample : estimate.samples) {
     for (; next != options.flight.end() && next->frame < sample.frame; ++next) add_missing(*next);
-    if (next != options.flight.end() && next->frame == sample.frame) ++next;
+    const bool in_flight = next != options.flight.end() && next->frame == sample.frame;
+    flown.push_back({sample, in_flight ? next->t_ns : sample.t_ns, true});
     map_id = sample.map_id;
-    flown.push_back({sample, true});
+    if (in_flight) ++next;
   }
   for (; next != options.flight.end(); ++next) add_missing(*next);
   return flown;
@@ -192,7 +191,7 @@ void add_outcome(const std::vector<FlownFrame>& flown,
   score->coverage = static_cast<double>(score->tracked_frames) / score->frames;
   const auto first =
       static_cast<std::size_t>(std::find_if(flown.begin(), flown.end(), has_pose) - flown.begin());
-  score->initialised_at_s = s_from_ns(flown[first].sample.t_ns);
+  score->initialised_at_s = s_from_ns(flown[first].t_ns);
   std::set<int> maps;
   std::set<int> tracked_maps;
   for (std::size_t i = first; i < flown.size(); ++i) {

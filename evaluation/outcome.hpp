@@ -10,7 +10,10 @@ namespace overfly::evaluation {
 /// A frame of the flight and the estimator's output for it.
 struct FlownFrame {
   EstimateSample sample;  ///< if not received: frame, time and the previous map
-  bool given = true;      ///< false: dropped, late, lost in transport or never sent
+  /// Time of the frame in the flight, which a fault of the camera's clock does not change; the
+  /// sample's stamp if Options::flight does not contain the frame.
+  std::int64_t t_ns = 0;
+  bool given = true;  ///< false: dropped, late, lost in transport or never sent
 };
 
 /// Every frame of the flight, in order: Options::flight and the samples of the track.

@@ -21,13 +21,14 @@ std::vector<HeldPose> held_poses(const Trajectory& truth,
                                  const Options& options) {
   std::vector<HeldPose> held;
   std::optional<Eigen::Vector3d> last;
-  for (const auto& [sample, given] : flown) {
-    if (given && sample.state == TrackingState::kTracking && sample.map_id == map_id) {
+  for (const FlownFrame& frame : flown) {
+    const EstimateSample& sample = frame.sample;
+    if (frame.given && sample.state == TrackingState::kTracking && sample.map_id == map_id) {
       last = sample.T_vo_camera.translation;
     }
     if (!last) continue;
-    if (const auto frame = truth_of(truth, sample, options)) {
-      held.push_back({frame->T_world_camera.translation, *last});
+    if (const auto true_frame = truth_of(truth, sample, options)) {
+      held.push_back({true_frame->T_world_camera.translation, *last});
     }
   }
   return held;

@@ -54,7 +54,8 @@ evaluation::Score score_of(const RunRecords& records, const EstimatorRecords& es
   for (const EstimateRecord& record : estimator.records) {
     if (record.crash.empty()) continue;
     score.outcome = record.hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
-    score.outcome_time_s = s_from_ns(record.sample.t_ns);
+    const FrameRow* const frame = frame_row(camera, record.sample.frame);
+    score.outcome_time_s = s_from_ns(frame != nullptr ? frame->t_ns : record.sample.t_ns);
     break;
   }
   return score;

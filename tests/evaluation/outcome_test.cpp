@@ -21,6 +21,10 @@ class OutcomeTest : public ::testing::Test {
     for (int i = from; i < kFrames; ++i)
       track_.samples[static_cast<std::size_t>(i)].map_id = map_id;
   }
+  /// A fault of the camera's clock.
+  void shift_stamps(std::int64_t offset_ns) {
+    for (EstimateSample& sample : track_.samples) sample.t_ns += offset_ns;
+  }
   /// The estimator never gets these frames; the flight still has them.
   void take_away(int from, int to) {
     std::erase_if(track_.samples, [&](const EstimateSample& sample) {
@@ -146,6 +150,29 @@ TEST_F(OutcomeTest, AnEstimatorThatHangsIsLostWhereItHung) {
   EXPECT_EQ(result.outcome, Outcome::kLost);
   EXPECT_DOUBLE_EQ(*result.outcome_time_s, 19.0);
   EXPECT_DOUBLE_EQ(result.coverage, 190.0 / 600.0);
+}
+
+TEST_F(OutcomeTest, AClockThatIsSlowDoesNotMakeAShortGapALoss) {
+  shift_stamps(-kNsPerS);
+  take_away(599, kFrames);
+  EXPECT_EQ(scored().outcome, Outcome::kCompleted);
+  EXPECT_EQ(scored().initialised_at_s, 0.0);
+}
+
+TEST_F(OutcomeTest, AClockThatIsFastDoesNotHideALoss) {
+  shift_stamps(1'500'000'000);
+  take_away(585, kFrames);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kLost);
+  EXPECT_DOUBLE_EQ(*result.outcome_time_s, 58.5);
+}
+
+TEST_F(OutcomeTest, AClockThatIsFastDoesNotMakeAStartLate) {
+  shift_stamps(6 * kNsPerS);
+  take_away(0, 1);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kCompleted);
+  EXPECT_DOUBLE_EQ(*result.initialised_at_s, 0.1);
 }
 
 TEST_F(OutcomeTest, FramesMissedByOneThatWasLostAreNoTrackedOnes) {
