@@ -145,8 +145,10 @@ Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_trut
     return Error{ErrorCode::kInvalidArgument, "the truth contains no poses"};
   }
   std::vector<MatchedPose> matches;
+  const EstimateSample* first = nullptr;
   for (const EstimateSample& sample : estimate.samples) {
     if (!tracked(sample) || sample.map_id != *map_id) continue;
+    if (first == nullptr) first = &sample;
     if (const auto truth = truth_of(T_world_camera_truth, sample, options)) {
       matches.push_back({truth->t_ns,
                          truth->T_world_camera,
@@ -159,6 +161,7 @@ Result<std::vector<MatchedPose>> associate(const Trajectory& T_world_camera_trut
     keep_nearest_of_each(T_world_camera_truth, &matches);
   }
   if (matches.empty()) return no_overlap(T_world_camera_truth, estimate, *map_id, options);
+  matches.front().scene_depth = first->scene_depth;
   add_detours(T_world_camera_truth, &matches);
   return matches;
 }

@@ -70,7 +70,7 @@ struct Options {
   std::vector<FlightFrame> flight;
   Association association = Association::kInterpolate;
   std::int64_t max_time_difference_ns = 10'000'000;  ///< kNearest only
-  /// True depth of the ground along the optical axis at the first tracked pose [m].
+  /// True depth of the ground along the optical axis at the first tracked frame [m].
   std::optional<double> init_true_depth_m;
   /// Mount of the camera. Used to compute roll, pitch and yaw of the body.
   Pose T_body_camera{R_body_camera_nadir(), Eigen::Vector3d::Zero()};
@@ -87,6 +87,8 @@ struct MatchedPose {
   std::int64_t t_ns = 0;
   Pose T_world_camera;  ///< truth
   Pose T_vo_camera;     ///< estimate
+  /// Of the first pair: that of the map's first tracked frame, which may be an earlier one without
+  /// truth, because Options::init_true_depth_m belongs to that frame.
   std::optional<double> scene_depth;
   PoseCovariancePtr covariance = nullptr;  ///< of T_vo_camera's error; null if not stated
   /// After a gap of more than a second in the estimate: how much longer the true path since the
@@ -170,7 +172,7 @@ struct AlignmentRemarks {
 /// Computes S_world_vo of one mode from matched poses.
 /// - none: identity.
 /// - origin: aligns the first poses; scale 1.
-/// - init_scale: as origin, with the scale init_true_depth_m / scene depth of the first pose. If
+/// - init_scale: as origin, with the scale init_true_depth_m / scene depth of the first frame. If
 /// one of the two is absent, the ratio of path lengths over the first 5 s is used and noted;
 /// without times, over the first 50 steps, which are 5 s at the 10 Hz of the KITTI benchmark.
 /// - se3, sim3: least squares over positions (Umeyama 1991).

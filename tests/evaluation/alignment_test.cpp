@@ -346,6 +346,29 @@ TEST(Alignment, InitScaleIsTrueDepthOverSceneDepth) {
   EXPECT_LT(rotation_angle_rad(first.rotation, truth.poses().front().pose.rotation), 1e-12);
 }
 
+/// The true depth belongs to the first tracked frame, also where the first scored pose is a later
+/// one: the truth begins later, or another frame is nearer to the truth's first pose.
+TEST(Alignment, InitScaleTakesBothDepthsFromTheFirstTrackedFrame) {
+  Options options;
+  options.init_true_depth_m = 300.0;
+  for (const Association association : {Association::kInterpolate, Association::kNearest}) {
+    options.association = association;
+    const Trajectory truth = wavy_truth(100);
+    EstimateTrack track = seen_from(truth, some_similarity());
+    for (EstimateSample& sample : track.samples) sample.scene_depth = 2.0;
+    EstimateSample first = track.samples.front();
+    first.t_ns -= 5'000'000;
+    first.scene_depth = 1.25;
+    track.samples.insert(track.samples.begin(), first);
+    const auto matches = associate(truth, track, options);
+    ASSERT_TRUE(matches.ok()) << matches.error().message;
+    EXPECT_EQ(matches->front().t_ns, 0) << to_string(association);
+    const auto found = align(*matches, AlignmentMode::kInitScale, options);
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    EXPECT_EQ(found->scale, 240.0) << to_string(association);
+  }
+}
+
 TEST(Alignment, InitScaleWithoutADepthIsThePathRatioAndSaysSo) {
   const Trajectory truth = wavy_truth(100);
   EstimateTrack track = seen_from(truth, some_similarity());
