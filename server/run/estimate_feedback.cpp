@@ -1,19 +1,22 @@
 #include "server/run/estimate_feedback.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace overfly::server {
 namespace {
 
-/// Frames that an estimator may be behind.
+/// Frames that are kept: an estimator may be behind, and its stamps too.
 constexpr std::size_t kMostFrames = 1024;
 
 }  // namespace
 
 void EstimateFeedback::add_frame(const FrameRow& row) {
   const std::lock_guard lock(mutex_);
-  frames_.push_back({row.frame, row.T_world_camera, row.axis_depth_m});
-  if (frames_.size() > kMostFrames) frames_.pop_front();
+  frames_.push_back(row);
+  // Rarely, so that a frame is not moved with every later one.
+  if (frames_.size() < 2 * kMostFrames) return;
+  frames_.erase(frames_.begin(), frames_.end() - kMostFrames);
 }
 
 void EstimateFeedback::take(const EstimateRecord& record) {
@@ -21,10 +24,12 @@ void EstimateFeedback::take(const EstimateRecord& record) {
   PlacedEstimate placed{sample.t_ns, sample.map_id, std::nullopt};
   {
     const std::lock_guard lock(mutex_);
-    while (!frames_.empty() && frames_.front().index < sample.frame) frames_.pop_front();
-    if (!frames_.empty() && frames_.front().index == sample.frame) {
-      placed.T_world_body =
-          alignment_.add(sample, frames_.front().T_world_camera, frames_.front().axis_depth_m);
+    const auto after = std::upper_bound(
+        frames_.begin(), frames_.end(), sample.frame, [](std::int64_t frame, const FrameRow& row) {
+          return frame < row.frame;
+        });
+    if (after != frames_.begin() && std::prev(after)->frame == sample.frame) {
+      placed.T_world_body = alignment_.add(sample, {frames_.begin(), after});
     }
   }
   receiver_->take(placed);

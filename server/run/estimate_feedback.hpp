@@ -1,11 +1,11 @@
 // Takes an estimator's answers to the vehicle that flies, as soon as they are there.
 #pragma once
 
-#include <cstdint>
-#include <deque>
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/motion/estimate_receiver.hpp"
 #include "core/motion/pose.hpp"
@@ -33,17 +33,10 @@ class EstimateFeedback {
   }
 
  private:
-  /// The truth of a frame, for the alignment.
-  struct Frame {
-    std::int64_t index = 0;
-    Pose T_world_camera;
-    std::optional<double> axis_depth_m;
-  };
-
   const std::shared_ptr<EstimateReceiver> receiver_;
   std::mutex mutex_;
   LiveAlignment alignment_;
-  std::deque<Frame> frames_;
+  std::vector<FrameRow> frames_;
 };
 
 }  // namespace overfly::server

@@ -101,7 +101,7 @@ Status RunRecorder::add_answer(std::size_t estimator, EstimatorEvent& event) {
   row.unanswered_frames = state.status.unanswered;
   const CameraRecords& camera = records_.camera_of(records_.estimators[estimator]);
   if (const FrameRow* frame = frame_row(camera, row.sample.frame)) {
-    row.T_world_body = state.alignment.add(row.sample, frame->T_world_camera, frame->axis_depth_m);
+    row.T_world_body = state.alignment.add(row.sample, {camera.frames.data(), frame + 1});
     if (const auto& S_world_vo = state.alignment.S_world_vo()) row.scale = S_world_vo->scale;
   }
   // An estimator that has ended returns an empty answer at once.

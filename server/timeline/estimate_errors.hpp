@@ -13,7 +13,8 @@
 
 namespace overfly::server {
 
-/// Error of an aligned camera pose at its frame: estimate minus truth.
+/// Error of an aligned camera pose against the truth at its stamp, as in the score: estimate minus
+/// truth.
 struct EstimateError {
   evaluation::AxisError position;
   double rotation_rad = 0.0;  ///< angle of the rotation from one to the other
@@ -29,8 +30,8 @@ struct EstimateError {
 [[nodiscard]] evaluation::Band position_nees_band();
 
 /// @param rows  successive rows of the estimator
-/// @return one entry for each row; empty while not tracking, without an alignment, and for a frame
-///         that is not recorded
+/// @return one entry for each row; empty while not tracking, without an alignment, and for a stamp
+///         that the recorded frames do not reach
 [[nodiscard]] std::vector<std::optional<EstimateError>> errors_of(
     const RunTimeline& timeline,
     std::size_t estimator,

@@ -68,7 +68,7 @@ void append_estimates(const RunRecords& records,
     row.sample = record.sample;
     row.dropped_frames = so_far.dropped;
     row.unanswered_frames = so_far.unanswered;
-    row.T_world_body = alignment.add(record.sample, frame->T_world_camera, frame->axis_depth_m);
+    row.T_world_body = alignment.add(record.sample, {camera.frames.data(), frame + 1});
     if (const auto& S_world_vo = alignment.S_world_vo()) row.scale = S_world_vo->scale;
     const auto latency = timings.latency_ms.find(record.sample.frame);
     if (latency != timings.latency_ms.end()) row.latency_ms = latency->second;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
-#include <utility>
 
+#include "core/motion/trajectory.hpp"
 #include "core/time.hpp"
 #include "server/timeline/count_frames.hpp"
+#include "server/timeline/true_poses.hpp"
 
 namespace overfly::server {
 namespace {
@@ -26,28 +26,23 @@ std::vector<EstimateRow> rows_before(const RunTimeline& timeline,
   return timeline.estimates(estimator, end - count, count);
 }
 
-std::vector<FrameRow> frames_between(const RunTimeline& timeline,
-                                     std::size_t camera,
-                                     std::int64_t first_frame,
-                                     std::int64_t last_frame) {
-  const std::size_t begin =
-      count_frames(timeline, camera, [&](const FrameRow& row) { return row.frame < first_frame; });
-  const std::size_t end =
-      count_frames(timeline, camera, [&](const FrameRow& row) { return row.frame <= last_frame; });
-  return timeline.frames(begin, end - std::min(begin, end), camera);
-}
-
 /// As MatchedPose::detour_m, from the frames in between.
-double detour_between_m(std::vector<FrameRow>::const_iterator from,
-                        std::vector<FrameRow>::const_iterator to) {
-  if (to->t_ns - from->t_ns <= kNsPerS) return 0.0;
-  const Eigen::Vector3d way_m = to->T_world_camera.translation - from->T_world_camera.translation;
+double detour_between_m(const StampedPose& from,
+                        const StampedPose& to,
+                        const std::vector<FrameRow>& frames) {
+  if (to.t_ns - from.t_ns <= kNsPerS) return 0.0;
+  auto frame = std::upper_bound(
+      frames.begin(), frames.end(), from.t_ns, [](std::int64_t t_ns, const FrameRow& row) {
+        return t_ns < row.t_ns;
+      });
+  Eigen::Vector3d last_m = from.pose.translation;
   double path_m = 0.0;
-  for (; from != to; ++from) {
-    path_m +=
-        (std::next(from)->T_world_camera.translation - from->T_world_camera.translation).norm();
+  for (; frame != frames.end() && frame->t_ns < to.t_ns; ++frame) {
+    path_m += (frame->T_world_camera.translation - last_m).norm();
+    last_m = frame->T_world_camera.translation;
   }
-  return std::max(0.0, path_m - way_m.norm());
+  path_m += (to.pose.translation - last_m).norm();
+  return std::max(0.0, path_m - (to.pose.translation - from.pose.translation).norm());
 }
 
 std::vector<std::optional<PosePair>> poses_of(const std::vector<EstimateRow>& rows,
@@ -55,16 +50,16 @@ std::vector<std::optional<PosePair>> poses_of(const std::vector<EstimateRow>& ro
                                               const RowAlignment& alignment,
                                               const Pose& T_body_camera) {
   std::vector<std::optional<PosePair>> poses(rows.size());
-  auto frame = frames.begin();
-  auto last = frames.end();  // of the pose before
+  std::optional<StampedPose> last;  // truth of the pose before
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const EstimateSample& sample = rows[i].sample;
-    while (frame != frames.end() && frame->frame < sample.frame) ++frame;
-    if (frame == frames.end() || frame->frame != sample.frame) continue;
+    const std::optional<Pose> T_world_camera = true_pose_at(frames, sample.t_ns);
+    if (!T_world_camera) continue;
     if (const auto T_world_body = alignment.T_world_body(rows[i])) {
-      const double detour_m = last == frames.end() ? 0.0 : detour_between_m(last, frame);
-      poses[i] = {sample.map_id, frame->T_world_camera, *T_world_body * T_body_camera, detour_m};
-      last = frame;
+      const StampedPose now{sample.t_ns, *T_world_camera};
+      const double detour_m = last ? detour_between_m(*last, now, frames) : 0.0;
+      poses[i] = {sample.map_id, *T_world_camera, *T_world_body * T_body_camera, detour_m};
+      last = now;
     }
   }
   return poses;
@@ -82,8 +77,9 @@ std::vector<WindowErrors> window_errors_of(const RunTimeline& timeline,
   const std::size_t earlier = all.size();
   all.insert(all.end(), rows.begin(), rows.end());
   const std::size_t camera = camera_of_estimator(timeline, estimator);
+  const StampRange stamps = stamps_of(all);
   const std::vector<FrameRow> frames =
-      frames_between(timeline, camera, all.front().sample.frame, all.back().sample.frame);
+      frames_around(timeline, camera, stamps.first_ns, stamps.last_ns);
   const std::vector<std::optional<PosePair>> poses =
       poses_of(all, frames, alignment, timeline.cameras().at(camera).T_body_camera);
   const auto relative = evaluation::relative_errors_along(poses);

@@ -17,10 +17,10 @@ struct WindowErrors {
   std::optional<evaluation::RelativeErrorAt> relative;  ///< evaluation::relative_errors_along
 };
 
-/// Of the camera's poses at their frames.
+/// Of the camera's poses against the truth at their stamps, as in the score.
 /// @param rows  successive rows of the estimator
 /// @return one entry for each row; without errors while not tracking, without an alignment, and for
-///         a frame that is not recorded
+///         a stamp that the recorded frames do not reach
 [[nodiscard]] std::vector<WindowErrors> window_errors_of(const RunTimeline& timeline,
                                                          std::size_t estimator,
                                                          const std::vector<EstimateRow>& rows,

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 
@@ -11,6 +12,7 @@
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/run/run_options.hpp"
+#include "server/timeline/estimate_errors.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/server_fixture.hpp"
 
@@ -190,8 +192,17 @@ TEST(CameraRun, WrongStampsShowAsErrorAlongTheTrack) {
   ASSERT_TRUE(run.ok()) << run.error().message;
   const EstimatorMetrics& score = run->metrics.estimators.at("p");
   // Frames from 1 s on have a stamp 40 ms too early: 1 m at 25 m/s.
-  EXPECT_NEAR(
-      score.score.alignments.at(evaluation::AlignmentMode::kInitScale).position_m.max, 1.0, 0.01);
+  const double scored_m =
+      score.score.alignments.at(evaluation::AlignmentMode::kInitScale).position_m.max;
+  EXPECT_NEAR(scored_m, 1.0, 0.01);
+  const auto opened = RunTimeline::open(folder.path() / "r");
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  double plotted_m = 0.0;
+  for (const auto& error :
+       errors_of(**opened, 0, (*opened)->estimates(0, 0, 100), RowAlignment())) {
+    plotted_m = std::max(plotted_m, error.value().position_m());
+  }
+  EXPECT_NEAR(plotted_m, scored_m, 1e-6);
 }
 
 class CameraRunOn : public ::testing::TestWithParam<const char*> {};

@@ -24,9 +24,11 @@ std::unique_ptr<RunTimeline> straight_flight(double speed_m_s = 10.0) {
   return timeline;
 }
 
+/// Of a frame of straight_flight(), with its time as stamp.
 EstimateRow estimate_at(std::int64_t frame, const Pose& T_world_body) {
   EstimateRow row;
   row.sample.frame = frame;
+  row.sample.t_ns = frame * 50'000'000;
   row.sample.state = TrackingState::kTracking;
   row.T_world_body = T_world_body;
   return row;
@@ -44,7 +46,7 @@ TEST(EstimateErrors, AreSplitByTheDirectionOfTheTrueMotion) {
   EstimateRow lost = estimate_at(10, Pose());
   lost.T_world_body.reset();
   const auto errors =
-      errors_of(timeline, 0, {estimate_at(8, off), lost, estimate_at(11, off)}, RowAlignment());
+      errors_of(timeline, 0, {estimate_at(8, off), lost, estimate_at(20, off)}, RowAlignment());
   ASSERT_EQ(errors.size(), 3U);
   ASSERT_TRUE(errors[0]);
   EXPECT_NEAR(errors[0]->position.along_m, 3.0, 1e-12);
@@ -53,7 +55,24 @@ TEST(EstimateErrors, AreSplitByTheDirectionOfTheTrueMotion) {
   EXPECT_NEAR(errors[0]->position_m(), std::sqrt(14.0), 1e-12);
   EXPECT_NEAR(deg_from_rad(errors[0]->rotation_rad), 10.0, 1e-9);
   EXPECT_FALSE(errors[1]) << "not tracking";
-  EXPECT_FALSE(errors[2]) << "frame 11 is not recorded";
+  EXPECT_FALSE(errors[2]) << "the truth ends before";
+}
+
+/// The score compares with the truth at the stamp, which a fault of the clock makes wrong.
+TEST(EstimateErrors, AreThoseAtTheStamp) {
+  const auto flight = straight_flight();
+  EstimateRow slow = estimate_at(8, flight->frames(4, 1).front().T_world_body);
+  slow.sample.t_ns -= 40'000'000;
+  EstimateRow fast = slow;
+  fast.sample.t_ns += 170'000'000;
+  EstimateRow last = estimate_at(18, flight->frames(9, 1).front().T_world_body);
+  last.sample.t_ns += 1;
+  const auto errors = errors_of(*flight, 0, {slow, fast, last}, RowAlignment());
+  ASSERT_TRUE(errors[0] && errors[1]);
+  EXPECT_NEAR(errors[0]->position.along_m, 0.4, 1e-9);
+  EXPECT_NEAR(errors[0]->position_m(), 0.4, 1e-9);
+  EXPECT_NEAR(errors[1]->position.along_m, -1.3, 1e-9);
+  EXPECT_FALSE(errors[2]) << "the truth does not reach it";
 }
 
 /// The estimator's frame is turned and in units of 50 m: its covariance is too.
@@ -106,6 +125,7 @@ TEST(EstimateErrors, DoNotDependOnWhatComesLater) {
     Pose off = frame.T_world_body;
     off.translation += Eigen::Vector3d(0.1 * k, 2.0, 1.0);
     rows.push_back(estimate_at(k, off));
+    rows.back().sample.t_ns = frame.t_ns;
     const auto errors = errors_of(timeline, 0, {rows.back()}, RowAlignment());
     ASSERT_TRUE(errors.front());
     alone.push_back(*errors.front());

@@ -33,6 +33,7 @@ class WindowErrorsTest : public ::testing::Test {
       if (k > 0) estimate += (1.0 + 1e-4 * k) * (truth_at(k) - truth_at(k - 1));
       EstimateRow row;
       row.sample.frame = k;
+      row.sample.t_ns = frame.t_ns;
       row.sample.state = TrackingState::kTracking;
       row.T_world_body = Pose();
       row.T_world_body->translation = estimate;
@@ -97,6 +98,22 @@ TEST_F(WindowErrorsTest, AreEmptyAcrossMapsAndWhileLost) {
   EXPECT_FALSE(errors[350].relative);
   EXPECT_TRUE(errors[351].scale);
   EXPECT_TRUE(errors[351].relative);
+}
+
+/// From frame 300 on the camera's clock is fast by 1 s, that is 25 m: so is the truth of the
+/// stamps.
+TEST_F(WindowErrorsTest, AreThoseAtTheStamps) {
+  fly(600);
+  std::vector<EstimateRow> all = rows();
+  for (std::size_t k = 300; k < 600; ++k) all[k].sample.t_ns += 1'000'000'000;
+  const auto errors = window_errors_of(timeline_, 0, all, RowAlignment());
+  ASSERT_TRUE(errors[350].scale);
+  EXPECT_NEAR(*errors[350].scale, -0.23, 0.03);
+  ASSERT_TRUE(errors[500].scale);
+  EXPECT_NEAR(*errors[500].scale, 0.045, 0.001);
+  EXPECT_TRUE(errors[574].scale);
+  EXPECT_FALSE(errors[575].scale) << "the truth does not reach it";
+  EXPECT_FALSE(errors[575].relative);
 }
 
 TEST_F(WindowErrorsTest, OfAVehicleThatStandsAreEmpty) {
