@@ -1,12 +1,15 @@
 #include "flight/log_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
 #include "core/motion/time_order.hpp"
 #include "core/motion/trajectory_io.hpp"
+#include "core/text/number_text.hpp"
 #include "core/text/text_fields.hpp"
+#include "core/time.hpp"
 
 namespace overfly::flight {
 namespace {
@@ -85,6 +88,22 @@ Result<FlightLog> read_csv(const FieldFile& file,
   return log;
 }
 
+/// A flight goes smoothly through gaps, however long they are.
+void warn_of_gaps_in(const TrajectoryFile& file,
+                     const std::string& name,
+                     std::vector<std::string>& warnings) {
+  const std::vector<StampedPose>& poses = file.trajectory.poses();
+  std::int64_t longest_ns = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (!file.trajectory.has_gap_before(i)) continue;
+    longest_ns = std::max(longest_ns, poses[i].t_ns - poses[i - 1].t_ns);
+  }
+  if (longest_ns == 0) return;
+  warnings.push_back(name + ": " + counted(file.unknown_poses, "row") +
+                     " without a pose: the gaps, the longest of " +
+                     short_text(s_from_ns(longest_ns)) + " s, are bridged without any sample");
+}
+
 }  // namespace
 
 Result<FlightLog> read_log(const std::filesystem::path& path,
@@ -104,6 +123,7 @@ Result<FlightLog> read_log(const std::filesystem::path& path,
         path.string() + ": KITTI poses without a times.txt in the same folder cannot be flown"};
   }
   FlightLog log{poses->trajectory, poses->warnings};
+  warn_of_gaps_in(*poses, path.string(), log.warnings);
   if (!camera_poses) return log;
   const Pose T_camera_body = Pose{R_body_camera_nadir(), Eigen::Vector3d::Zero()}.inverse();
   log.T_world_body = {};

@@ -19,7 +19,7 @@ struct FlightLog {
 };
 
 /// Sorts rows by time and keeps the first of several with the same time; `warnings` reports how
-/// many were moved or dropped.
+/// many were moved or dropped, and how long the gaps of rows without a pose are.
 /// Errors: as fly_log.
 [[nodiscard]] Result<FlightLog> read_log(const std::filesystem::path& file,
                                          const LocalFrame& frame,

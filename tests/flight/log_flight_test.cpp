@@ -15,8 +15,10 @@ namespace {
 using overfly::testing::TemporaryFolder;
 using overfly::testing::write_text;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr const char* kHeader = "t_s,lat_deg,lon_deg,alt_ellipsoid_m,roll_deg,pitch_deg,yaw_deg\n";
 
@@ -153,6 +155,16 @@ TEST(LogFlight, OrdersRowsByTimeAndSaysSo) {
   EXPECT_THAT((*flight)->warnings(),
               ElementsAre(HasSubstr("log.csv: 1 rows (first in line 5) repeat the time"),
                           HasSubstr("3 rows (first in line 3) are out of time order")));
+}
+
+TEST(LogFlight, SaysThatGapsAreBridged) {
+  const std::string unknown = " nan nan nan nan nan nan nan\n";
+  const std::string known = "1 0 0 50 0 0 0 1\n2 10 0 50 0 0 0 1\n63.5 10 300 50 0 0 0 1\n";
+  EXPECT_THAT(fly_text(known + "3" + unknown + "62" + unknown)->warnings(),
+              Contains(HasSubstr("2 rows without a pose: the gaps, the longest of 61.5 s, are "
+                                 "bridged without any sample")));
+  EXPECT_THAT(fly_text("0" + unknown + known + "70" + unknown)->warnings(), IsEmpty())
+      << "nothing lies between poses";
 }
 
 TEST(LogFlight, NamesFileLineColumnAndValueOfABadRow) {
