@@ -105,6 +105,8 @@ std::optional<ClockOffset> clock_offset(const Trajectory& truth,
                                         const std::vector<EstimateSample>& samples) {
   ClockOffset offset;
   offset.position_rmse_before_m = rmse_at(truth, samples, 0);
+  // Nothing shows then what an offset explains.
+  if (!std::isfinite(offset.position_rmse_before_m)) return std::nullopt;
   std::int64_t best_ns = 0;
   double best_m = offset.position_rmse_before_m;
   for (std::int64_t t_ns = -kMaxClockOffsetNs; t_ns <= kMaxClockOffsetNs; t_ns += kGridNs) {
@@ -114,7 +116,7 @@ std::optional<ClockOffset> clock_offset(const Trajectory& truth,
       best_ns = t_ns;
     }
   }
-  if (!std::isfinite(best_m) || std::abs(best_ns) == kMaxClockOffsetNs) return std::nullopt;
+  if (std::abs(best_ns) == kMaxClockOffsetNs) return std::nullopt;
   offset.offset_ns = minimum_between(truth,
                                      samples,
                                      static_cast<double>(best_ns - kGridNs),

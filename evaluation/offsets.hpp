@@ -46,7 +46,8 @@ struct Offsets {
 /// The clock offset minimises the position error after sim3 alignment: over a grid of 50 ms, then
 /// by golden-section search. Alignment leaves nothing of an offset on a straight path at constant
 /// speed, and on a level circle; there it is not determined, does not explain any error, and is not
-/// reported. Neither is one at the end of the range. The mount offset is the mean of the
+/// reported. Neither is one at the end of the range, nor any where gaps of the truth take more than
+/// a tenth of the poses without an offset. The mount offset is the mean of the
 /// rotation errors (chordal L2 mean: Hartley, Trumpf, Dai, Li 2013, "Rotation averaging", sec. 5.3,
 /// doi:10.1007/s11263-012-0601-0); it is not determined where sim3 is degenerate.
 /// Both are reported only from kLeastExplained and kLeastGainM or kLeastGainDeg on.
