@@ -173,8 +173,8 @@ Result<std::optional<MadeFrame>> FrameMaker::make(std::int64_t k) {
   made.t_ns = frame_ns(k);
   const auto around =
       stages_.measure("truth", [&]() -> Result<std::optional<std::vector<AircraftState>>> {
-        auto states =
-            truth_->around(made.t_ns, window_.half_ns, window_.raster_ns, options_.cancel);
+        auto states = truth_->around(
+            made.t_ns, window_.half_ns, window_.raster_ns, frame_ns(k + 1), options_.cancel);
         if (options_.truth_samples == nullptr || !states) return states;
         if (Status written = options_.truth_samples->flush(); !written) return written.error();
         return states;

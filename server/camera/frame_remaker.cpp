@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/time.hpp"
 #include "server/camera/truth.hpp"
 
 namespace overfly::server {
@@ -33,15 +34,16 @@ Result<std::unique_ptr<FrameRemaker>> FrameRemaker::create(
   return maker;
 }
 
-Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(std::int64_t t_ns) {
+Result<std::optional<std::vector<AircraftState>>> FrameRemaker::states_around(const FrameRow& row) {
   // A window never goes back in time: an earlier frame needs a new one.
-  if (!truth_ || t_ns < asked_ns_) {
+  if (!truth_ || row.t_ns < asked_ns_) {
     auto source = open_flown_truth(folder_, {}, scenario_, *world_);
     if (!source) return source.error();
     truth_ = std::make_unique<TruthWindow>(std::move(*source));
   }
-  asked_ns_ = t_ns;
-  return truth_->around(t_ns, window_.half_ns, window_.raster_ns);
+  asked_ns_ = row.t_ns;
+  const std::int64_t next_ns = frame_time_ns(row.frame + 1, scenario_.rate);
+  return truth_->around(row.t_ns, window_.half_ns, window_.raster_ns, next_ns);
 }
 
 Result<Image> FrameRemaker::read_again(const CameraSpec& camera, const FrameRow& row) {
@@ -72,7 +74,7 @@ Result<renderer::CameraRequest> FrameRemaker::request(std::size_t camera, const 
                                           row.t_ns,
                                           renderer::PixelFormat::kGrey8);
   }
-  const auto states = states_around(row.t_ns);
+  const auto states = states_around(row);
   if (!states) return states.error();
   if (!*states) {
     return Error{

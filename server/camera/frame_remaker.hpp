@@ -57,7 +57,8 @@ class FrameRemaker {
   [[nodiscard]] Status check_camera(std::size_t camera) const;
   /// The recorded image of a row.
   [[nodiscard]] Result<Image> read_again(const CameraSpec& camera, const FrameRow& row);
-  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(std::int64_t t_ns);
+  [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> states_around(
+      const FrameRow& row);
 
   std::filesystem::path folder_;
   Scenario scenario_;

@@ -42,12 +42,16 @@ Result<std::optional<std::vector<AircraftState>>> TruthWindow::around(
     std::int64_t t_ns,
     std::int64_t half_ns,
     std::int64_t step_ns,
+    std::int64_t next_ns,
     const std::atomic<bool>* cancel) {
   const std::int64_t n = (half_ns + step_ns - 1) / step_ns;
   std::vector<AircraftState> states;
   states.reserve(static_cast<std::size_t>(2 * n + 1));
   for (std::int64_t j = -n; j <= n; ++j) {
     const std::int64_t at_ns = t_ns + j * step_ns;
+    if (at_ns - step_ns < next_ns && next_ns < at_ns) {
+      if (const auto next = at(next_ns, cancel); !next) return next.error();
+    }
     auto state = at(std::max<std::int64_t>(at_ns, 0), cancel);
     if (!state) return state.error();
     if (*state && at_ns < 0) *state = extrapolated(**state, at_ns);

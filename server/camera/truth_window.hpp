@@ -27,12 +27,15 @@ class TruthWindow {
   /// t_ns. Before t = 0 and after the flight's end the motion is extrapolated. t_ns must not
   /// decrease from call to call. Empty if the flight has ended at t_ns.
   /// @param step_ns  > 0
+  /// @param next_ns  t_ns of the next call, > t_ns: asked for too if the window reaches beyond it,
+  ///                 so that the middle state of that call is not interpolated
   /// @param cancel  as in TruthSource::state_at
   /// Errors: as TruthSource::state_at.
   [[nodiscard]] Result<std::optional<std::vector<AircraftState>>> around(
       std::int64_t t_ns,
       std::int64_t half_ns,
       std::int64_t step_ns,
+      std::int64_t next_ns,
       const std::atomic<bool>* cancel = nullptr);
   /// The state at one time, which must not precede the windows so far except by times in memory.
   [[nodiscard]] Result<std::optional<AircraftState>> at(std::int64_t t_ns,

@@ -1,10 +1,12 @@
 // The truth while the shutter is open.
 #include "server/camera/truth_window.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/time.hpp"
 
@@ -29,21 +31,24 @@ class Turning final : public TruthSource {
     state.omega_body_rad_s = {0.0, 0.0, 0.5};
     return state;
   }
-  static int asked_;
+  static std::vector<std::int64_t> asked_ns_;
 
  private:
   Result<std::optional<AircraftState>> find_state(std::int64_t t_ns,
                                                   const std::atomic<bool>* /*cancel*/) override {
     EXPECT_GE(t_ns, last_ns_) << "asked for the past";
     last_ns_ = t_ns;
-    ++asked_;
+    asked_ns_.push_back(t_ns);
     if (t_ns > kNsPerS) return std::optional<AircraftState>();
     return std::optional(truth(t_ns));
   }
 
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
 };
-int Turning::asked_ = 0;
+std::vector<std::int64_t> Turning::asked_ns_;
+
+/// Of the next frame, beyond all windows.
+constexpr std::int64_t kLater = 10 * kNsPerS;
 
 void expect_truth(const AircraftState& state) {
   const AircraftState truth = Turning::truth(state.t_ns);
@@ -53,7 +58,7 @@ void expect_truth(const AircraftState& state) {
 
 TEST(TruthWindow, LiesOnARasterAroundTheFrameAndReachesItsEnds) {
   TruthWindow window(std::make_unique<Turning>());
-  const auto states = window.around(100 * kMs, 3 * kMs + 1, kMs);
+  const auto states = window.around(100 * kMs, 3 * kMs + 1, kMs, kLater);
   ASSERT_TRUE(states.ok() && states->has_value());
   ASSERT_EQ((*states)->size(), 9U);
   for (std::int64_t j = -4; j <= 4; ++j) {
@@ -63,25 +68,25 @@ TEST(TruthWindow, LiesOnARasterAroundTheFrameAndReachesItsEnds) {
 }
 
 TEST(TruthWindow, OfAnInstantAsksOnce) {
-  Turning::asked_ = 0;
+  Turning::asked_ns_.clear();
   TruthWindow window(std::make_unique<Turning>());
-  const auto states = window.around(100 * kMs, 0, kMs);
+  const auto states = window.around(100 * kMs, 0, kMs, kLater);
   ASSERT_TRUE(states.ok() && states->has_value());
   EXPECT_EQ((*states)->size(), 1U);
-  EXPECT_EQ(Turning::asked_, 1);
+  EXPECT_EQ(Turning::asked_ns_.size(), 1U);
 }
 
 TEST(TruthWindow, GoesOnBeforeTheBeginningAndAfterTheEnd) {
   TruthWindow window(std::make_unique<Turning>());
-  const auto first = window.around(0, 5 * kMs, kMs);
+  const auto first = window.around(0, 5 * kMs, kMs, kLater);
   ASSERT_TRUE(first.ok() && first->has_value());
   EXPECT_EQ((*first)->front().t_ns, -5 * kMs);
   for (const AircraftState& state : **first) expect_truth(state);
-  const auto last = window.around(kNsPerS, 5 * kMs, kMs);
+  const auto last = window.around(kNsPerS, 5 * kMs, kMs, kLater);
   ASSERT_TRUE(last.ok() && last->has_value());
   EXPECT_EQ((*last)->back().t_ns, kNsPerS + 5 * kMs);
   for (const AircraftState& state : **last) expect_truth(state);
-  const auto over = window.around(kNsPerS + kMs, 0, kMs);
+  const auto over = window.around(kNsPerS + kMs, 0, kMs, kLater);
   ASSERT_TRUE(over.ok());
   EXPECT_FALSE(over->has_value());
 }
@@ -90,9 +95,23 @@ TEST(TruthWindow, SharesWhatOverlapsWithoutGoingBack) {
   // 32 ms apart, 25 ms to either side, on a raster that does not divide the step.
   TruthWindow window(std::make_unique<Turning>());
   for (std::int64_t t_ns = 0; t_ns < 900 * kMs; t_ns += 32'258'065) {
-    const auto states = window.around(t_ns, 25 * kMs, kMs);
+    const auto states = window.around(t_ns, 25 * kMs, kMs, kLater);
     ASSERT_TRUE(states.ok() && states->has_value());
     for (const AircraftState& state : **states) expect_truth(state);
+  }
+}
+
+/// At 60 Hz with readout and exposure of 16.6 ms the raster goes beyond the next frame.
+TEST(TruthWindow, AsksForTheNextFrameBeforeItGoesBeyond) {
+  Turning::asked_ns_.clear();
+  TruthWindow window(std::make_unique<Turning>());
+  constexpr std::int64_t kPeriodNs = 16'666'667;
+  for (std::int64_t k = 0; k < 50; ++k) {
+    const auto states = window.around(k * kPeriodNs, 16'600'000, kMs, (k + 1) * kPeriodNs);
+    ASSERT_TRUE(states.ok() && states->has_value());
+    EXPECT_EQ((*states)->size(), 35U);
+    EXPECT_THAT(Turning::asked_ns_, ::testing::Contains(k * kPeriodNs));
+    expect_truth((**states)[17]);
   }
 }
 
