@@ -3,27 +3,29 @@
 
 Usage: results.py BUILD_FOLDER
 
-Reads the XML file that each suite leaves in BUILD_FOLDER/test-results, and the lists of suites that ctest
-makes (cmake/AddTestSuites.cmake). The exit code is 1 if a suite of a list left no results, because it
-crashed, ran out of time or was not run.
+Reads the XML file that each suite leaves in BUILD_FOLDER/test-results, and asks ctest for the suites
+(cmake/AddTestSuites.cmake). The exit code is 1 if a suite left no results, because it crashed, ran out of
+time or was not run.
 """
 
 import collections
+import json
 import pathlib
-import re
+import subprocess
 import sys
 import xml.etree.ElementTree
 
-LIST_ENDING = "_tests_suites.txt"
+OUTPUT_OPTION = "--gtest_output=xml:"
 
 
 def expected(build):
-    """The names of all suites."""
-    for file in build.rglob("*" + LIST_ENDING):
-        room = file.name.removesuffix(LIST_ENDING)
-        for line in file.read_text().splitlines():
-            if suite := re.fullmatch(r"([^ #]+)\.( +#.*)?", line):
-                yield f"{room}.{suite[1].replace('/', '.')}"
+    """The names of all suites. Lists of suites of programs that are no longer configured do not count."""
+    listing = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True,
+                             stdout=subprocess.PIPE, text=True).stdout
+    for test in json.loads(listing)["tests"]:
+        for word in test.get("command", []):
+            if word.startswith(OUTPUT_OPTION):
+                yield pathlib.Path(word.removeprefix(OUTPUT_OPTION)).stem
 
 
 def main():
