@@ -69,10 +69,11 @@ export async function startServer({
   let output = '';
   const exited = new Promise((resolve) => child.on('exit', resolve));
   const address = await new Promise((resolve, reject) => {
-    const late = setTimeout(
-      () => reject(new Error(`no address after ${kStart_ms} ms\n${output}`)),
-      kStart_ms,
-    );
+    const late = setTimeout(() => {
+      // While it runs, `node --test` does not end.
+      child.kill('SIGKILL');
+      reject(new Error(`no address after ${kStart_ms} ms\n${output}`));
+    }, kStart_ms);
     const read = (chunk) => {
       output += chunk;
       const match = /http:\/\/127\.0\.0\.1:\d+\/\?token=\S+/.exec(output);
