@@ -32,14 +32,21 @@ std::vector<Override> take_overrides(std::string_view* input) {
   return overrides;
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::string_view input = fuzz::text_of(data, size);
+Result<Scenario> scenario_of(std::string_view input) {
   const std::vector<Override> overrides = take_overrides(&input);
   const auto document = parse_json(std::string(input), "the input");
-  if (!document) return 0;
-  const auto scenario = resolve_scenario(*document, overrides, "/nonexistent");
+  if (!document) return document.error();
+  return resolve_scenario(*document, overrides, "/nonexistent");
+}
+
+}  // namespace
+
+extern "C" bool overfly_fuzz_accepts(const std::uint8_t* data, std::size_t size) {
+  return scenario_of(fuzz::text_of(data, size)).ok();
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto scenario = scenario_of(fuzz::text_of(data, size));
   if (!scenario) return 0;
   // What a run writes into its folder is the same scenario again.
   const auto again = parse_json(scenario->resolved.dump(), "the resolved document");

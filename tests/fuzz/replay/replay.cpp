@@ -21,6 +21,11 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
+/// Whether the target's parser accepts an input. Defined by targets whose seeds must be accepted,
+/// because nothing behind the first error of an input is read. Seeds named `refused_...` must be
+/// refused.
+extern "C" [[gnu::weak]] bool overfly_fuzz_accepts(const std::uint8_t* data, std::size_t size);
+
 namespace overfly::fuzz {
 namespace {
 
@@ -133,9 +138,24 @@ int replay_files(const std::vector<fs::path>& files) {
   return inputs.empty() ? 1 : 0;
 }
 
+/// False, and a line on standard error, for each seed that the target does not treat as its name
+/// says.
+bool seeds_are_as_named(const std::vector<fs::path>& files, const std::vector<std::string>& seeds) {
+  bool as_named = true;
+  for (std::size_t i = 0; overfly_fuzz_accepts != nullptr && i < seeds.size(); ++i) {
+    const bool wanted = !files[i].filename().string().starts_with("refused_");
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(seeds[i].data());
+    if (overfly_fuzz_accepts(bytes, seeds[i].size()) == wanted) continue;
+    std::fprintf(stderr, "%s: %s\n", files[i].c_str(), wanted ? "is refused" : "is accepted");
+    as_named = false;
+  }
+  return as_named;
+}
+
 int replay_corpus(const std::string& target) {
-  const std::vector<std::string> seeds = read_all(corpus_of(target));
-  if (seeds.empty()) return 1;
+  const std::vector<fs::path> files = corpus_of(target);
+  const std::vector<std::string> seeds = read_all(files);
+  if (seeds.empty() || !seeds_are_as_named(files, seeds)) return 1;
   InputUnderWay under_way(target + "_replay.input");
   Mutator mutator(seeds, words_of(target));
   for (std::size_t i = 0; i < seeds.size() + kMutations; ++i) {
