@@ -223,6 +223,8 @@ def main() -> int:
     if reason:
         print(f"skipped: {reason}")
         return cluster.SKIPPED
+    # The cluster is stopped too when this test is interrupted.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     with tempfile.TemporaryDirectory(prefix="overfly-slurm-", ignore_cleanup_errors=True) as name:
         folder = pathlib.Path(name)
         slurm = cluster.Cluster(folder / "cluster")
