@@ -59,18 +59,12 @@ evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, doubl
 class SweepTablesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        fs::path(::testing::TempDir()) /
-        ("tables_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     std::ofstream(folder_ / "sweep.json")
         << Json{{"title", "Made | up"},
                 {"version", "0.1 abc"},
                 {"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
                 {"estimator_names", {"one", "two", "hold"}}};
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void add(const Made& made, const std::string& key = "", std::uint64_t first_seed = 1) {
     const std::string id =
@@ -118,7 +112,8 @@ class SweepTablesTest : public ::testing::Test {
     return markdown_from(document_from(tables(options), options));
   }
 
-  fs::path folder_;
+  overfly::testing::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   int number_ = 0;
 };
 

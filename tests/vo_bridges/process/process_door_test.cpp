@@ -311,7 +311,7 @@ TEST(ProcessDoor, TellsWhatTheChildUses) {
 
 TEST(ProcessDoor, BindsTheChildToItsCpus) {
   ProcessEstimatorOptions options = scripted("good");
-  options.cpus = {0};
+  options.cpus = {testing::first_cpu()};
   const auto estimator = started(options);
   EXPECT_EQ(estimator->track(ground_frames(1, 1.0, 1.0)[0])->counters.at("cpus"), 1.0);
 }

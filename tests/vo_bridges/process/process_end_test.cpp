@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -107,14 +108,15 @@ TEST_F(ProcessEnd, TemporaryFilesGoIntoAFolderOfItsOwnAndAreRemoved) {
 /// Folders of killed programs go; those in use, or made just now, stay.
 TEST_F(ProcessEnd, FoldersThatNobodyUsesAnyMoreAreRemoved) {
   namespace fs = std::filesystem;
-  const auto made = [](const std::string& end) {
-    const fs::path folder = fs::temp_directory_path() / ("overfly-estimator-test" + end);
-    fs::create_directories(folder / "a");
-    return folder;
+  const auto made = [] {
+    std::string folder = (fs::temp_directory_path() / "overfly-estimator-XXXXXX").string();
+    EXPECT_NE(::mkdtemp(folder.data()), nullptr);
+    fs::create_directories(fs::path(folder) / "a");
+    return fs::path(folder);
   };
   const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
-  const fs::path left = made("left");
-  const fs::path young = made("young");
+  const fs::path left = made();
+  const fs::path young = made();
   auto used = process::PrivateFolder::create();
   ASSERT_TRUE(used.ok()) << used.error().message;
   for (const fs::path& folder : {left, used->path()}) fs::last_write_time(folder, long_ago);

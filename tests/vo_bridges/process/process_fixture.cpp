@@ -1,5 +1,7 @@
 #include "tests/vo_bridges/process/process_fixture.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -63,6 +65,15 @@ bool alive(int pid) {
   if (!std::getline(file, text)) return false;
   const std::size_t name_end = text.rfind(')');
   return name_end != std::string::npos && text.size() > name_end + 2 && text[name_end + 2] != 'Z';
+}
+
+int first_cpu() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  EXPECT_EQ(::sched_getaffinity(0, sizeof(allowed), &allowed), 0);
+  int cpu = 0;
+  while (cpu + 1 < CPU_SETSIZE && !CPU_ISSET(cpu, &allowed)) ++cpu;
+  return cpu;
 }
 
 bool gone_soon(int pid) {

@@ -52,6 +52,9 @@ std::vector<VoFrame> ground_frames(
 /// Waits until it is not, 5 s at most.
 [[nodiscard]] bool gone_soon(int pid);
 
+/// A processor that this process may use.
+[[nodiscard]] int first_cpu();
+
 /// No child is left: neither running nor waiting to be reaped.
 class ChildrenTest : public ::testing::Test {
  protected:

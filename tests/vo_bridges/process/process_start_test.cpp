@@ -134,7 +134,10 @@ TEST_F(ProcessStart, BadOptionsAreNamed) {
               HasSubstr("answer_timeout_s = 3601"));
   EXPECT_THAT(error_with([](auto* o) { o->memory_limit_mb = -1.0; }),
               HasSubstr("memory_limit_mb = -1"));
-  EXPECT_THAT(error_with([](auto* o) { o->cpus = {0, 1000}; }), HasSubstr("cpus[1] = 1000"));
+  EXPECT_THAT(error_with([](auto* o) {
+                o->cpus = {testing::first_cpu(), 1000};
+              }),
+              HasSubstr("cpus[1] = 1000"));
   EXPECT_THAT(error_with([](auto* o) { o->parameters["a b"] = 1.0; }), HasSubstr("'a b'"));
   EXPECT_THAT(error_with([](auto* o) { o->parameters["a"] = std::string("x\ny"); }),
               HasSubstr("parameters.a"));
