@@ -8,10 +8,12 @@
 
 #include "core/time.hpp"
 #include "flight/flight.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight {
 namespace {
 
+using overfly::testing::larger_error;
 using ::testing::HasSubstr;
 
 std::unique_ptr<TruthSource> fly(
@@ -116,7 +118,7 @@ TEST_P(CourseSweep, TurnsAreCoordinatedWithinTheBankLimit) {
   double largest_rad = 0.0;
   for (const AircraftState& state : states_) {
     const double roll = attitude(state).roll_rad;
-    largest_rad = std::max(largest_rad, std::abs(roll));
+    largest_rad = larger_error(largest_rad, std::abs(roll));
     // On flat ground the heading's rate is the vertical part of the angular rate.
     const Eigen::Vector3d omega_world = state.T_world_body.rotation * state.omega_body_rad_s;
     ASSERT_NEAR(-omega_world.z(), 9.80665 * std::tan(roll) / parameters_.airspeed_m_s, 1e-9);
@@ -137,7 +139,7 @@ TEST_P(CourseSweep, RollAccelerationHasNoSteps) {
   for (std::size_t i = 1; i < states_.size(); ++i) {
     const double acceleration =
         (states_[i].omega_body_rad_s.x() - states_[i - 1].omega_body_rad_s.x()) / dt_s;
-    largest_change = std::max(largest_change, std::abs(acceleration - before));
+    largest_change = larger_error(largest_change, std::abs(acceleration - before));
     before = acceleration;
   }
   // Raised cosine over T: |d2 rate / dt2| <= rate / 2 (pi / T)^2, twice at a joint of two ramps.
@@ -235,7 +237,7 @@ TEST(Course, AttitudeHasNoJitter) {
   }
   double largest_rad = 0.0;
   for (std::size_t i = 2; i < turns.size(); ++i) {
-    largest_rad = std::max(largest_rad, (turns[i] - 2.0 * turns[i - 1] + turns[i - 2]).norm());
+    largest_rad = larger_error(largest_rad, (turns[i] - 2.0 * turns[i - 1] + turns[i - 2]).norm());
   }
   // The motion's own: |d3 angle| <= 0.785 / 2 (pi / 0.5)^2 rad/s3 * (1e-3 s)^3 = 1.6e-8 rad.
   EXPECT_LT(largest_rad, 3e-8);

@@ -8,10 +8,12 @@
 
 #include "core/motion/pose.hpp"
 #include "flight/flight.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight {
 namespace {
 
+using overfly::testing::larger_error;
 using ::testing::HasSubstr;
 
 constexpr double kSpeedMS = 25.0;
@@ -28,7 +30,7 @@ double taken_of_wave(double wavelength_m) {
   const HeightProfile profile = above([&](double t_s) { return std::sin(omega * t_s); });
   double largest = 0.0;
   for (double t_s = 20.0; t_s < kDurationS - 20.0; t_s += 0.01) {
-    largest = std::max(largest, std::abs(profile.at(t_s).up_m - 300.0));
+    largest = larger_error(largest, std::abs(profile.at(t_s).up_m - 300.0));
   }
   return largest;
 }

@@ -7,10 +7,12 @@
 
 #include "sensor/noise_source.hpp"
 #include "tests/sensor/flat_field.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::sensor {
 namespace {
 
+using overfly::testing::larger_error;
 using testing::correlation;
 using testing::counting_sensor;
 using testing::flat_field;
@@ -63,7 +65,7 @@ double distance_from_normal(std::vector<double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double expected = 0.5 * std::erfc(-values[i] / std::sqrt(2.0));
     const double below = static_cast<double>(i) / static_cast<double>(values.size());
-    largest = std::max(largest, std::abs(below - expected));
+    largest = larger_error(largest, std::abs(below - expected));
   }
   return largest;
 }

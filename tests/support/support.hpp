@@ -1,6 +1,7 @@
 // What the tests of several rooms share.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,6 +27,12 @@ class TemporaryFolder {
 
 /// Path below the source tree.
 [[nodiscard]] std::filesystem::path source_file(const std::string& relative);
+
+/// The larger of two errors, or NaN if one of them is NaN, which std::max(worst, error) passes
+/// over.
+[[nodiscard]] inline double larger_error(double worst, double error) {
+  return std::isnan(worst) || worst >= error ? worst : error;
+}
 
 void write_text(const std::filesystem::path& file, const std::string& text);
 [[nodiscard]] std::string read_text(const std::filesystem::path& file);

@@ -12,10 +12,12 @@
 #include "flight/autopilot/mission_preview.hpp"
 #include "flight/dynamics/trim.hpp"
 #include "tests/flight/autopilot/flights.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::autopilot {
 namespace {
 
+using overfly::testing::larger_error;
 using testing::fly;
 using ::testing::HasSubstr;
 using testing::item_of;
@@ -51,7 +53,7 @@ TEST(MissionFlight, HoldsHeightAndTrackOverASquareInWind) {
       }
       // Captured: three periods of the guidance after the turn.
       if (t_s(at) > begun_s + 3.0 * setup.parameters.navl1_period) {
-        off_m = std::max(off_m, std::abs(pilot.cross_track_m()));
+        off_m = larger_error(off_m, std::abs(pilot.cross_track_m()));
       }
       return true;
     });
@@ -167,7 +169,7 @@ TEST(MissionFlight, LoitersForTurnsAndForTime) {
   const MissionFlight flight = fly(setup, [&](const MissionFlight& at) {
     const std::size_t item = at.autopilot().pilot().item();
     if (item < begun_s.size() && begun_s[item] == 0.0) begun_s[item] = t_s(at);
-    if (item == 1) off_m = std::max(off_m, std::abs(at.autopilot().pilot().cross_track_m()));
+    if (item == 1) off_m = larger_error(off_m, std::abs(at.autopilot().pilot().cross_track_m()));
     return true;
   });
   ASSERT_EQ(flight.end(), FlightEnd::kMissionDone);
@@ -248,7 +250,7 @@ TEST(MissionFlight, FollowsTheTerrainWhereAsked) {
         const double off = p.z() - hills->ground_up_m(p.x(), p.y()) - 150.0;
         square += off * off;
         ++count;
-        worst = std::max(worst, std::abs(off));
+        worst = larger_error(worst, std::abs(off));
         return true;
       },
       hills);

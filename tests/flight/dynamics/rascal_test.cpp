@@ -26,6 +26,8 @@
 namespace overfly::dynamics {
 namespace {
 
+using overfly::testing::larger_error;
+
 constexpr double kMetrePerFoot = 0.3048;
 
 struct Row {
@@ -79,10 +81,9 @@ TEST(RecordedRascal, AirDataFollowFromVelocityAndAttitude) {
   double worst_speed = 0.0, worst_angle = 0.0;
   for (const Row& row : rows) {
     const AirData air = Aircraft::create(setup, row.state, {})->air_data();
-    worst_speed = std::max(worst_speed, std::abs(air.airspeed_m_s - row.airspeed_m_s));
-    worst_angle = std::max({worst_angle,
-                            std::abs(air.alpha_rad - row.alpha_rad),
-                            std::abs(air.beta_rad - row.beta_rad)});
+    worst_speed = larger_error(worst_speed, std::abs(air.airspeed_m_s - row.airspeed_m_s));
+    worst_angle = larger_error(worst_angle, std::abs(air.alpha_rad - row.alpha_rad));
+    worst_angle = larger_error(worst_angle, std::abs(air.beta_rad - row.beta_rad));
   }
   RecordProperty("worst_speed_m_s", std::to_string(worst_speed));
   RecordProperty("worst_angle_rad", std::to_string(worst_angle));
@@ -114,8 +115,10 @@ TEST(RecordedRascal, IntegratedRatesGiveItsAttitudesAndPositions) {
       });
     }
     const BodyState& end = rows[start + kWindow].state;
-    worst_angle = std::max(worst_angle, rotation_angle_rad(state.R_world_body, end.R_world_body));
-    worst_place_m = std::max(worst_place_m, (state.position_world_m - end.position_world_m).norm());
+    worst_angle =
+        larger_error(worst_angle, rotation_angle_rad(state.R_world_body, end.R_world_body));
+    worst_place_m =
+        larger_error(worst_place_m, (state.position_world_m - end.position_world_m).norm());
   }
   RecordProperty("worst_angle_rad", std::to_string(worst_angle));
   RecordProperty("worst_place_m", std::to_string(worst_place_m));
@@ -147,7 +150,7 @@ TEST(RecordedRascal, TurnsByBankAndSideForce) {
     // Beard & McLain, eq. 3.3.
     const double by_rates = (omega.y() * std::sin(roll) + omega.z() * std::cos(roll)) /
                             std::cos(row.attitude.pitch_rad);
-    worst_rate = std::max(worst_rate, std::abs(turn_rate / by_rates - 1.0));
+    worst_rate = larger_error(worst_rate, std::abs(turn_rate / by_rates - 1.0));
     const double turn = turn_rate * row.airspeed_m_s / (g * std::tan(roll));
     least_turn = std::min(least_turn, turn);
     most_turn = std::max(most_turn, turn);

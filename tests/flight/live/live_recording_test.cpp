@@ -17,6 +17,7 @@
 namespace overfly::flight::live {
 namespace {
 
+using overfly::testing::larger_error;
 using testing::append;
 using testing::Bytes;
 using ::testing::ElementsAre;
@@ -94,12 +95,12 @@ Differences differences(LiveTruth& truth, const logs::LogTrajectory& log, std::i
     const Eigen::Quaterniond R_world_body =
         frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body;
     ++found.compared;
-    found.position_m =
-        std::max(found.position_m,
-                 ((*state)->T_world_body.translation - frame.world_from_geodetic(point)).norm());
-    found.attitude_deg =
-        std::max(found.attitude_deg,
-                 deg_from_rad(rotation_angle_rad((*state)->T_world_body.rotation, R_world_body)));
+    found.position_m = larger_error(
+        found.position_m,
+        ((*state)->T_world_body.translation - frame.world_from_geodetic(point)).norm());
+    found.attitude_deg = larger_error(
+        found.attitude_deg,
+        deg_from_rad(rotation_angle_rad((*state)->T_world_body.rotation, R_world_body)));
   }
   return found;
 }

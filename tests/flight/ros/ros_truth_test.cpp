@@ -15,12 +15,14 @@
 #include "flight/logs/truth/log_trajectory.hpp"
 #include "flight/replay/logged_flight.hpp"
 #include "tests/flight/ros/mavros_messages.hpp"
+#include "tests/support/support.hpp"
 #include "tests/vo_bridges/ros1/ros_world.hpp"
 
 namespace overfly::flight::ros_live {
 namespace {
 
 using overfly::testing::Child;
+using overfly::testing::larger_error;
 using overfly::testing::RosMaster;
 using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
@@ -130,12 +132,12 @@ TEST(RosTruth, FliesTheGlobalTopicAsTheRawMessages) {
     ASSERT_TRUE(state.ok() && *state) << state.error().message;
     const Geodetic point = geodetic_from_deg(
         pose.position.x(), pose.position.y(), pose.position.z() + testing::kSitlGeoidM);
-    worst_m = std::max(
+    worst_m = larger_error(
         worst_m, ((*state)->T_world_body.translation - frame.world_from_geodetic(point)).norm());
     const Eigen::Quaterniond R_world_body =
         frame.R_world_enu_at(point) * logs::R_enu_ned() * pose.R_ned_body;
     worst_rad =
-        std::max(worst_rad, rotation_angle_rad((*state)->T_world_body.rotation, R_world_body));
+        larger_error(worst_rad, rotation_angle_rad((*state)->T_world_body.rotation, R_world_body));
   }
   EXPECT_LT(worst_m, 1e-6);
   EXPECT_LT(deg_from_rad(worst_rad), 1e-4);
@@ -165,7 +167,7 @@ TEST(RosTruth, FliesThePoseTopicAsTheRawMessages) {
     if (!state || !*state) return false;
     const Eigen::Vector3d ned = mavlink::decode_local_position(frame).position_ned_m;
     const Eigen::Vector3d enu(ned.y(), ned.x(), -ned.z());
-    worst_m = std::max(worst_m, ((*state)->T_world_body.translation - enu).norm());
+    worst_m = larger_error(worst_m, ((*state)->T_world_body.translation - enu).norm());
     ++compared;
     return true;
   });
@@ -204,7 +206,7 @@ TEST(RosTruth, HasTheSensorsOfTheRawMessages) {
       while (other != others.end() && other->t_ns < sample.t_ns + shift_ns) ++other;
       if (other == others.end() || other->t_ns != sample.t_ns + shift_ns) continue;
       ++compared;
-      worst = std::max(worst, difference(sample, *other));
+      worst = larger_error(worst, difference(sample, *other));
     }
     EXPECT_EQ(compared, list.size());
     return std::pair(compared, worst);

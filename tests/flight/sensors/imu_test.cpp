@@ -10,9 +10,12 @@
 #include "core/time.hpp"
 #include "flight/flight.hpp"
 #include "flight/gravity.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight {
 namespace {
+
+using overfly::testing::larger_error;
 
 constexpr double kGravity = 9.80665;
 
@@ -116,8 +119,8 @@ TEST(Imu, IntegratesBackToTheFlightThatMadeIt) {
     const std::int64_t end_ns =
         half && k > 0 ? kEndNs : readings[k].sample.t_ns + ns_from_s(0.0025);
     const AircraftState wanted = truth->state_at(end_ns).value().value();
-    worst_m = std::max(worst_m, (p - wanted.T_world_body.translation).norm());
-    worst_rad = std::max(worst_rad, rotation_angle_rad(R, wanted.T_world_body.rotation));
+    worst_m = larger_error(worst_m, (p - wanted.T_world_body.translation).norm());
+    worst_rad = larger_error(worst_rad, rotation_angle_rad(R, wanted.T_world_body.rotation));
   }
   std::printf("[ IMU      ] 60 s integrated: %.4f m, %.2e rad\n", worst_m, worst_rad);
   EXPECT_LT(worst_m, 0.05);

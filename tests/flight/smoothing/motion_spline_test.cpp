@@ -5,9 +5,12 @@
 #include "flight/smoothing/noise_level.hpp"
 #include "flight/smoothing/spline_fit.hpp"
 #include "tests/flight/smoothing/sampled_flight.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight::smoothing {
 namespace {
+
+using overfly::testing::larger_error;
 
 TEST(SplineKnots, CoverATimeAndLimitPlaces) {
   const SplineKnots knots = SplineKnots::covering(1.0, 2.05, 0.1);
@@ -95,9 +98,9 @@ TEST(SplineFit, IsTheSameWhereverWindowsEnd) {
   double worst_m = 0.0;
   double worst_rad = 0.0;
   for (double t_s = 40.0; t_s < 128.0; t_s += 0.03) {
-    worst_m = std::max(worst_m, (whole.position_m(t_s) - part.position_m(t_s)).norm());
-    worst_rad =
-        std::max(worst_rad, rotation_angle_rad(turned.rotation(t_s), turned_part.rotation(t_s)));
+    worst_m = larger_error(worst_m, (whole.position_m(t_s) - part.position_m(t_s)).norm());
+    worst_rad = larger_error(worst_rad,
+                             rotation_angle_rad(turned.rotation(t_s), turned_part.rotation(t_s)));
   }
   EXPECT_LT(worst_m, 1e-3);  // the solver's tolerance
   EXPECT_LT(worst_rad, 1e-5);

@@ -6,10 +6,12 @@
 #include <cstring>
 
 #include "tests/flight/smoothing/sampled_flight.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::flight::smoothing {
 namespace {
 
+using overfly::testing::larger_error;
 using ::testing::HasSubstr;
 using testing::Recorder;
 using testing::Recording;
@@ -186,8 +188,8 @@ TEST(SmoothMotion, RemovesTheTiltOfTheBoard) {
   TrueCourse truth;
   double worst = 0.0;
   for (double t_s = 46.0; t_s < 60.0; t_s += 0.5) {
-    worst = std::max(worst,
-                     (result.motion.at(t_s).omega_body_rad_s - truth(t_s).omega_body_rad_s).norm());
+    worst = larger_error(
+        worst, (result.motion.at(t_s).omega_body_rad_s - truth(t_s).omega_body_rad_s).norm());
   }
   EXPECT_LT(worst, 0.2);
 }

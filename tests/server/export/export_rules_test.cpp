@@ -10,11 +10,13 @@
 #include "server/scenario/document/scenario_override.hpp"
 #include "terrain/raster/image_file.hpp"
 #include "tests/server/export/export_fixture.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
+using overfly::testing::larger_error;
 using overfly::testing::read_text;
 using overfly::testing::TemporaryFolder;
 using overfly::testing::write_text;
@@ -129,8 +131,8 @@ TEST(Export, InertialDataOfARunAreThoseOfItsFlight) {
     ASSERT_EQ(recorded[i][0], exact[i][0]) << i;
     for (std::size_t column = 1; column < 7; ++column) {
       double& worst = column < 4 ? worst_rad_s : worst_m_s2;
-      worst =
-          std::max(worst, std::abs(std::stod(recorded[i][column]) - std::stod(exact[i][column])));
+      worst = larger_error(worst,
+                           std::abs(std::stod(recorded[i][column]) - std::stod(exact[i][column])));
     }
   }
   std::printf("[ IMU      ] from samples: %.2g rad/s, %.2g m/s2 off\n", worst_rad_s, worst_m_s2);

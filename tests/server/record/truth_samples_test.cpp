@@ -15,6 +15,7 @@ namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
+using overfly::testing::larger_error;
 using overfly::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
@@ -114,10 +115,10 @@ TEST(TruthSamples, AreInterpolatedFromTwoHundredEachSecond) {
   for (std::int64_t t_ns = 0; t_ns < 2 * kNsPerS; t_ns += 777'777) {
     const AircraftState state = flight->state_at(t_ns).value().value();
     const AircraftState exact = truth(t_ns);
-    worst_m =
-        std::max(worst_m, (state.T_world_body.translation - exact.T_world_body.translation).norm());
-    worst_m_s = std::max(worst_m_s, (state.v_body_world_m_s - exact.v_body_world_m_s).norm());
-    worst_rad = std::max(
+    worst_m = larger_error(
+        worst_m, (state.T_world_body.translation - exact.T_world_body.translation).norm());
+    worst_m_s = larger_error(worst_m_s, (state.v_body_world_m_s - exact.v_body_world_m_s).norm());
+    worst_rad = larger_error(
         worst_rad, rotation_angle_rad(state.T_world_body.rotation, exact.T_world_body.rotation));
   }
   // Hermite: h^4 / 384 of the fourth derivative (30 m/s4), h = 5 ms; SLERP: h^2 / 8 of 1.2 rad/s2.

@@ -15,12 +15,14 @@
 #include "server/timeline/estimate_errors.hpp"
 #include "server/timeline/run_timeline.hpp"
 #include "tests/server/support/server_fixture.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::server {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+using overfly::testing::larger_error;
 using overfly::testing::TemporaryFolder;
 using ::testing::Contains;
 using testing::contents_without_timings;
@@ -273,8 +275,8 @@ TEST(CameraRun, ShakenCameraRecordsTheBodysOwnPose) {
     const FrameRow a = (*shaken)->frames(k, 1).front();
     const FrameRow b = (*still)->frames(k, 1).front();
     EXPECT_LT((a.T_world_body.matrix() - b.T_world_body.matrix()).norm(), 1e-9);
-    largest =
-        std::max(largest, rotation_angle_rad(a.T_world_camera.rotation, b.T_world_camera.rotation));
+    largest = larger_error(
+        largest, rotation_angle_rad(a.T_world_camera.rotation, b.T_world_camera.rotation));
   }
   EXPECT_GT(largest, 1e-4);
 }

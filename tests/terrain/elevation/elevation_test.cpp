@@ -16,6 +16,7 @@
 namespace overfly::terrain {
 namespace {
 
+using overfly::testing::larger_error;
 using testing::IndependentElevation;
 using testing::TemporaryFolder;
 
@@ -60,7 +61,8 @@ double largest_difference_m(const World& world,
     const double value = file.value_at(ground.lat_rad, ground.lon_rad);
     if (std::isnan(value)) continue;
     ++compared;
-    largest = std::max(largest, std::abs(ground.alt_ellipsoid_m - value * unit_m - separation_m));
+    largest =
+        larger_error(largest, std::abs(ground.alt_ellipsoid_m - value * unit_m - separation_m));
   }
   return largest;
 }
