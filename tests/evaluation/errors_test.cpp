@@ -198,5 +198,17 @@ TEST(Errors, HoldsTheLastPoseToTheEndOfTheFlight) {
   EXPECT_NEAR(none.position_rmse_hold_m, std::sqrt(100.0 * 101.0 * 201.0 / 6.0 / 191.0), 1e-9);
 }
 
+TEST(Errors, OfPositionHaveAHorizontalAndAVerticalPart) {
+  const Trajectory truth = wavy_truth(50);
+  EstimateTrack track = seen_from(truth, {});
+  for (EstimateSample& sample : track.samples) {
+    sample.T_vo_camera.translation += Eigen::Vector3d(3.0, 4.0, 12.0);
+  }
+  const AlignmentScore none = score(truth, track, {}).alignments.at(AlignmentMode::kNone);
+  EXPECT_NEAR(none.horizontal_rmse_m.value(), 5.0, 1e-9);
+  EXPECT_NEAR(none.vertical_rmse_m.value(), 12.0, 1e-9);
+  EXPECT_NEAR(none.position_m.rmse, 13.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace overfly::evaluation

@@ -325,5 +325,15 @@ TEST(Outcome, HasTheNamesOfTheConventions) {
   EXPECT_STREQ(to_string(Outcome::kTimeout), "TIMEOUT");
 }
 
+TEST_F(OutcomeTest, FramesMissingAtTheEndAreALossFromOneSecondOn) {
+  take_away(591, kFrames);  // 0.9 s after the last answer
+  EXPECT_EQ(scored().outcome, Outcome::kCompleted);
+  take_away(585, kFrames);
+  const Score result = scored();
+  EXPECT_EQ(result.outcome, Outcome::kLost);
+  ASSERT_TRUE(result.outcome_time_s.has_value());
+  EXPECT_DOUBLE_EQ(*result.outcome_time_s, 58.5);
+}
+
 }  // namespace
 }  // namespace overfly::evaluation
