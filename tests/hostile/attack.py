@@ -81,6 +81,14 @@ class Attack(unittest.TestCase):
         self.assertEqual(run["status"], "completed", json.dumps(run)[:800])
         return run
 
+    def assert_fields_work(self):
+        """Flies with good values of the fields that are attacked, so that a refusal is one of the value."""
+        for scenario, overrides in (("manifest", {"world.manifest": "world.json"}),
+                                    ("listed", {"world.imagery.0.file": "ground.tif",
+                                                "world.elevation": [{"file": "heights.tif"}]}),
+                                    ("logged", {"flight.log.file": "flight.tum"})):
+            self.assert_flies(scenario, overrides)
+
     def plant_run(self, name, **files):
         """Creates the folder of a finished run with some of its files replaced."""
         if not hasattr(type(self), "model"):

@@ -25,6 +25,7 @@ class Calls(Attack):
                 f"//{host}/share/x.tif", f"vrt:///vsicurl/http://{host}/x.tif"]
 
     def test_no_field_is_fetched(self):
+        self.assert_fields_work()
         fields = [("listed", "world.imagery.0.crs"), ("listed", "world.imagery.0.file"),
                   ("listed", "world.elevation"), ("manifest", "world.manifest"),
                   ("logged", "flight.log.file"), ("listed", "data")]

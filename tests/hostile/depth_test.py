@@ -73,6 +73,7 @@ class Depth(Attack):
                 self.assertIn("error", answer.json())
 
     def test_manifest_of_a_world(self):
+        self.assert_flies("manifest")
         (self.victim.data / "deep.json").write_text('{"imagery":' + nested(DEEP) + "}")
         self.assert_refused("manifest", {"world.manifest": "deep.json"})
 

@@ -34,6 +34,9 @@ class Files(Attack):
         return [*self.PLACES, str(self.victim.outside / "secret.txt"),
                 str(self.victim.outside / "secret.tif")]
 
+    def test_good_files_in_the_attacked_fields(self):
+        self.assert_fields_work()
+
     def test_as_manifest(self):
         for place in self.places():
             with self.subTest(place=place[:60]):

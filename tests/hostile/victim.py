@@ -21,11 +21,18 @@ ANSWER_S = 60
 SECRET = "the-secret-of-the-machine-7f3a"
 
 
-def write_geotiff(path, width_px, height_px, metres_per_pixel, east_m, north_m):
+def texture(x, y):
+    return (7 * x + 13 * y + (x * y) % 31) % 256
+
+
+def gentle_slope(x, _y):
+    return 100 + x // 16
+
+
+def write_geotiff(path, width_px, height_px, metres_per_pixel, east_m, north_m, value_at=texture):
     """A grey picture in EPSG:32610 (UTM zone 10), written by hand from the TIFF 6 and GeoTIFF 1.1
     standards, so that the test needs no imaging library."""
-    pixels = bytes((7 * x + 13 * y + (x * y) % 31) % 256
-                   for y in range(height_px) for x in range(width_px))
+    pixels = bytes(value_at(x, y) for y in range(height_px) for x in range(width_px))
     keys = struct.pack("<16H", 1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32610)
     scale = struct.pack("<3d", metres_per_pixel, metres_per_pixel, 0.0)
     tie = struct.pack("<6d", 0, 0, 0, east_m, north_m, 0)
@@ -138,6 +145,7 @@ class Victim:
             folder.mkdir(parents=True)
         (self.folder / "web" / "index.html").write_text("<!doctype html><title>page</title>")
         write_geotiff(self.data / "ground.tif", 256, 256, 4.0, 600000.0, 4200000.0)
+        write_geotiff(self.data / "heights.tif", 256, 256, 4.0, 600000.0, 4200000.0, gentle_slope)
         (self.outside / "secret.txt").write_text(SECRET + "\n")
         write_geotiff(self.outside / "secret.tif", 64, 64, 4.0, 600000.0, 4200000.0)
         world = {"format_version": 1, "imagery": [{"file": "ground.tif"}], "ground_height_m": 100}
