@@ -154,6 +154,17 @@ TEST_P(RendererContract, VoidFractionIsHalfAtTheEdgeOfTheImagery) {
   EXPECT_EQ(outside->texels_per_pixel_min, 0.0);
 }
 
+TEST_P(RendererContract, AxisDepthIsAlongAnObliqueAxis) {
+  ProceduralGround::Options options;
+  options.paint = overfly::testing::natural_paint;
+  const auto flat = create(std::make_shared<ProceduralGround>(options));
+  const Pose banked = nadir_pose(20.0, -30.0, 100.0, {rad_from_deg(45.0), 0.0, 0.6});
+  const auto frame = flat->render_camera(camera_, banked, 0, PixelFormat::kGrey8);
+  ASSERT_TRUE(frame.ok()) << frame.error().message;
+  ASSERT_TRUE(frame->axis_depth_m.has_value());
+  EXPECT_NEAR(*frame->axis_depth_m, 100.0 * std::sqrt(2.0), 0.01);
+}
+
 TEST_P(RendererContract, AxisDepthIsEmptyInTheSky) {
   const Pose level = {
       R_world_body_from({0.0, 0.4, 0.0}) *

@@ -35,6 +35,20 @@ TEST(HttpSession, AnswersPipelinedRequestsInOrderOnOneConnection) {
   EXPECT_LT(answers.find("none3"), answers.find("none4"));
 }
 
+TEST(HttpSession, EveryAnswerHasProtectiveHeaders) {
+  const TestServer server;
+  for (const char* path : {"/", "/api/v1/runs"}) {
+    const Answer answer = ask(server.port(), "GET", path);
+    EXPECT_EQ(answer.status, 200) << path;
+    EXPECT_EQ(answer.headers.at("x-content-type-options"), "nosniff") << path;
+    EXPECT_THAT(answer.headers.at("content-security-policy"),
+                AllOf(StartsWith("default-src 'self';"),
+                      HasSubstr("frame-ancestors 'self'"),
+                      HasSubstr("base-uri 'none'")))
+        << path;
+  }
+}
+
 TEST(HttpSession, RefusesHeadersThatAreTooLarge) {
   const TestServer server;
   const std::string request =
