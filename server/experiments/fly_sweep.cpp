@@ -76,6 +76,7 @@ class SweepFlyer {
     }
     executor_->stop();
     flown_.cancelled = cancelled();
+    if (Status status = withdraw_surplus(); !status) return status.error();
     show();
     return std::move(flown_);
   }
@@ -234,6 +235,13 @@ class SweepFlyer {
   Status record_shared() {
     for (const SweepResult& result : flown_.plan.take_shared(flown_.results)) {
       if (Status status = flown_.results.add(result); !status) return status;
+    }
+    return {};
+  }
+
+  Status withdraw_surplus() {
+    for (const SweepResult& result : flown_.plan.surplus(flown_.results)) {
+      if (Status status = flown_.results.withdraw(result); !status) return status;
     }
     return {};
   }

@@ -8,6 +8,7 @@
 #include "core/measure/sha256.hpp"
 #include "core/text/number_text.hpp"
 #include "evaluation/statistics/wilson.hpp"
+#include "server/experiments/keys/plain_numbers.hpp"
 #include "server/experiments/keys/result_key.hpp"
 #include "server/experiments/pictures/picture_key.hpp"
 #include "vo_bridges/process/child/program.hpp"
@@ -244,6 +245,23 @@ std::vector<SweepResult> SweepPlan::take_shared(const SweepResults& results) {
   }
   shared_ = std::move(flying);
   return taken;
+}
+
+std::vector<SweepResult> SweepPlan::surplus(const SweepResults& results) const {
+  std::map<std::string, const State*> finished;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (!states_[i].finished) continue;
+    finished[with_plain_numbers(cells_[i].values).dump()] = &states_[i];
+  }
+  std::vector<SweepResult> found;
+  for (const SweepResult* result : results.newest()) {
+    const auto state = finished.find(result->cell.dump());
+    if (state == finished.end()) continue;
+    const auto keys = state->second->keys.find(result->estimator);
+    if (keys == state->second->keys.end()) continue;
+    if (result->repeat >= static_cast<int>(keys->second.size())) found.push_back(*result);
+  }
+  return found;
 }
 
 std::size_t SweepPlan::most_flights() const {

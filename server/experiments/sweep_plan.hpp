@@ -47,6 +47,9 @@ class SweepPlan {
   /// Results of flights for the other cells and repeats that have the same flight, as far as they
   /// are known and `results` lacks them. Each is returned once.
   [[nodiscard]] std::vector<SweepResult> take_shared(const SweepResults& results);
+  /// Results of repeats that finished cells do not need: an earlier version of the estimator, or
+  /// another seed, was flown more often before the rate was known.
+  [[nodiscard]] std::vector<SweepResult> surplus(const SweepResults& results) const;
 
   [[nodiscard]] const std::vector<SweepCell>& cells() const { return cells_; }
   /// Flights of one estimator at most, of all cells together.

@@ -25,6 +25,13 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kMaxResultsBytes = std::uint64_t{1} << 30U;
 
+constexpr const char* kWithdrawn = "withdrawn";
+
+const char* status_of(const SweepResult& result) {
+  if (result.withdrawn) return kWithdrawn;
+  return result.completed() ? "completed" : "failed";
+}
+
 Json json_of_result(const SweepResult& result) {
   return {{"key", result.key},
           {"cell", result.cell},
@@ -32,7 +39,7 @@ Json json_of_result(const SweepResult& result) {
           {"seed", result.seed},
           {"estimator", result.estimator},
           {"run", result.run},
-          {"status", result.completed() ? "completed" : "failed"},
+          {"status", status_of(result)},
           {"error", result.error},
           {"outcome", result.completed() ? evaluation::to_string(result.outcome) : ""},
           {"duration_s", result.duration_s}};
@@ -60,6 +67,10 @@ std::optional<SweepResult> result_from(const Json& line) {
     const auto status = line.at("status").get<std::string>();
     if (status == "failed") {
       if (result.error.empty()) result.error = "failed";
+      return result;
+    }
+    if (status == kWithdrawn) {
+      result.withdrawn = true;
       return result;
     }
     const auto outcome = evaluation::outcome_from(line.at("outcome").get<std::string>());
@@ -148,6 +159,10 @@ bool SweepResults::has(const SweepResult& result) const {
 void SweepResults::keep(SweepResult result) {
   result.line = lines_++;
   result.cell = with_plain_numbers(std::move(result.cell));
+  if (result.withdrawn) {
+    by_flight_.erase(flight_identity(result));
+    return;
+  }
   by_flight_.insert_or_assign(flight_identity(result), result);
   std::string key = result.key;
   by_key_.insert_or_assign(std::move(key), std::move(result));
@@ -159,6 +174,11 @@ Status SweepResults::add(const SweepResult& result) {
   }
   keep(result);
   return {};
+}
+
+Status SweepResults::withdraw(SweepResult result) {
+  result.withdrawn = true;
+  return add(result);
 }
 
 std::vector<const SweepResult*> SweepResults::newest() const {

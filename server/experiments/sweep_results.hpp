@@ -21,6 +21,8 @@ struct SweepResult {
   std::string estimator;
   std::string run;    ///< its run folder, relative to the sweep's
   std::string error;  ///< why the flight failed; empty if it was completed
+  /// This line takes back the result of its cell, repeat and estimator.
+  bool withdrawn = false;
   /// Of a completed flight. A flight that failed says nothing about the estimator.
   evaluation::Outcome outcome = evaluation::Outcome::kNotInitialised;
   double duration_s = 0.0;  ///< of the flight, by the clock on the wall
@@ -47,10 +49,12 @@ class SweepResults {
   [[nodiscard]] bool has(const SweepResult& result) const;
   /// Errors: kIo.
   Status add(const SweepResult& result);
+  /// Takes a result from newest() and has(); find() still knows it. Errors: kIo.
+  Status withdraw(SweepResult result);
   [[nodiscard]] const std::map<std::string, SweepResult>& by_key() const { return by_key_; }
   /// The newest result of each flight (cell, repeat, estimator). It may be of another version of
-  /// the program or of the estimator, or of another seed, until it is flown again. In the order of
-  /// the lines. Cells have plain numbers (with_plain_numbers).
+  /// the program or of the estimator, or of another seed, until it is flown again or withdrawn. In
+  /// the order of the lines. Cells have plain numbers (with_plain_numbers).
   [[nodiscard]] std::vector<const SweepResult*> newest() const;
   /// Number of lines that are no results.
   [[nodiscard]] int unreadable_lines() const { return unreadable_lines_; }

@@ -243,6 +243,38 @@ TEST_F(FlySweep, RepeatsStopWhenTheRateIsKnown) {
   EXPECT_NEAR(rows[0].success_interval.low, 9.0 / (9.0 + 3.841458820694124), 1e-12);
 }
 
+/// The same cells and repeats with another seed of the scenario: the rate of the first is known
+/// after 20 flights, that of the second after 9.
+TEST_F(FlySweep, ResultsBeyondAnEarlierStopAreWithdrawn) {
+  const std::string rule = R"("axes": [], "repeats": {"most": 20, "half_width": 0.15})";
+  const Sweep first = sweep(rule + R"(, "set": {"seed": 1})");
+  const Sweep second = sweep(rule + R"(, "set": {"seed": 1000})");
+  const fs::path lost = own_folder() / "lost";
+  copy_run(lost);
+  Json metrics = Json::parse(read_text(lost / "metrics.json"));
+  metrics["estimators"]["p"]["outcome"] = "LOST";
+  write_text(lost / "metrics.json", metrics.dump());
+  write_program("if [ $(($(wc -l < '" + calls().string() + "') % 2)) -eq 1 ]; then cp -r '" +
+                lost.string() + "' \"$4\"; exit; fi");
+  ASSERT_TRUE(fly(first).ok());
+  EXPECT_EQ(flights(), 20U);
+  write_program();
+  ASSERT_TRUE(fly(second).ok());
+  EXPECT_EQ(flights(), 29U);
+  const auto nine = SweepResults::read(folder());
+  ASSERT_TRUE(nine.ok()) << nine.error().message;
+  ASSERT_EQ(nine->newest().size(), 9U);
+  for (const SweepResult* result : nine->newest()) EXPECT_GE(result->seed, 1000U);
+  EXPECT_EQ(nine->unreadable_lines(), 0);
+  const std::string written = read_text(folder() / "results.jsonl");
+  ASSERT_TRUE(fly(second).ok());
+  EXPECT_EQ(read_text(folder() / "results.jsonl"), written) << "nothing more is withdrawn";
+
+  ASSERT_TRUE(fly(first).ok());
+  EXPECT_EQ(flights(), 29U) << "results that were withdrawn are not lost";
+  EXPECT_EQ(SweepResults::read(folder())->newest().size(), 20U);
+}
+
 TEST_F(FlySweep, AnErrorOfAllCellsIsNamedOnce) {
   write_program();
   const auto flown = fly(sweep(

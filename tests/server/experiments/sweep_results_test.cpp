@@ -51,6 +51,23 @@ TEST(SweepResults, AreReadAsTheyWereWritten) {
   EXPECT_EQ(again->find("c"), nullptr);
 }
 
+TEST(SweepResults, WithdrawnOnesAreNotTheNewest) {
+  const TemporaryFolder folder;
+  auto results = SweepResults::open(folder.path());
+  const SweepResult lost = flown("a", evaluation::Outcome::kLost);
+  ASSERT_TRUE(results->add(lost).ok());
+  ASSERT_TRUE(results->withdraw(lost).ok());
+  for (const SweepResults& read : {*results, *SweepResults::read(folder.path())}) {
+    EXPECT_TRUE(read.newest().empty());
+    EXPECT_FALSE(read.has(lost));
+    ASSERT_NE(read.find("a"), nullptr) << "its flight is still known";
+    EXPECT_TRUE(read.find("a")->completed());
+    EXPECT_EQ(read.unreadable_lines(), 0);
+  }
+  ASSERT_TRUE(results->add(lost).ok());
+  EXPECT_EQ(SweepResults::read(folder.path())->newest().size(), 1U);
+}
+
 /// Cut at every byte, the file keeps its whole lines and can be continued.
 TEST(SweepResults, SurviveAKillAtEveryByte) {
   const TemporaryFolder folder;
