@@ -43,9 +43,7 @@ Json part_faults(const Json& document, const CriticalPart& part) {
 }  // namespace
 
 std::vector<CriticalPart> critical_parts(const evaluation::Score& score, double duration_s) {
-  const bool no_start =
-      score.outcome == Outcome::kNotInitialised || score.outcome == Outcome::kInitLate;
-  if (no_start) return {beginning(duration_s)};
+  if (failed_to_start(score.outcome)) return {beginning(duration_s)};
   if (!score.outcome_time_s) return {{0.0, duration_s, latest_start_s(duration_s)}};
   const double instant_s = *score.outcome_time_s;
   const double to_s = std::min(duration_s, instant_s + kAfter_s);
@@ -65,6 +63,10 @@ std::vector<CriticalPart> critical_parts(const evaluation::Score& score, double 
     parts.push_back({0.0, duration_s, latest_s});
   }
   return parts;
+}
+
+bool failed_to_start(Outcome outcome) {
+  return outcome == Outcome::kNotInitialised || outcome == Outcome::kInitLate;
 }
 
 bool survived(const evaluation::Score& score, const CriticalPart& part) {

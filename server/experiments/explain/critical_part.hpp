@@ -25,6 +25,9 @@ struct CriticalPart {
 [[nodiscard]] std::vector<CriticalPart> critical_parts(const evaluation::Score& score,
                                                        double duration_s);
 
+/// Whether the failure of a run is a failure to initialise, or to do so in time.
+[[nodiscard]] bool failed_to_start(evaluation::Outcome outcome);
+
 /// Whether the estimator of a flight over `part` survived: its outcome is kCompleted, or it only
 /// initialised later than such a short flight asks for.
 [[nodiscard]] bool survived(const evaluation::Score& score, const CriticalPart& part);

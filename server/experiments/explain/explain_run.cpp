@@ -91,7 +91,11 @@ class Explainer {
       if (!flight->error.empty()) {
         return Error{ErrorCode::kInternal, "cannot be flown again: " + flight->error};
       }
-      if (has_failed(flight)) {
+      // Where the estimator needs longer to initialise than the part allows, the failure of the run
+      // was not seen: that takes a longer part.
+      const bool other_failure =
+          failed_to_start(flight->score.outcome) && !failed_to_start(run_.score.outcome);
+      if (has_failed(flight) && !other_failure) {
         control_ = flight;
         result_.reproduced = true;
         break;
@@ -218,9 +222,12 @@ class Explainer {
     const Flown flown = fly(plan);
     if (!flown) return flown.error();
     for (std::size_t i = 0; i < kept.size(); ++i) {
-      if (has_failed((*flown)[i])) result_.sufficient.push_back(kept[i]);
+      const Reflight* flight = (*flown)[i];
+      if (has_failed(flight) || has_survived(flight)) result_.sufficiency_tested.push_back(kept[i]);
+      if (has_failed(flight)) result_.sufficient.push_back(kept[i]);
     }
-    if (result_.sufficient.empty() && result_.necessary.size() > 1) {
+    const bool all_tested = result_.sufficiency_tested.size() == result_.necessary.size();
+    if (result_.sufficient.empty() && result_.necessary.size() > 1 && all_tested) {
       result_.together = result_.necessary;
     }
     return {};

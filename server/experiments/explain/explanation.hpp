@@ -60,10 +60,13 @@ struct Explanation {
   std::vector<Cause> necessary;
   /// One of these is enough for the failure: with all other disturbances taken away it still fails.
   std::vector<Cause> sufficient;
+  /// Causes that were kept while all other disturbances were taken away: those of them that are not
+  /// in `sufficient` were survived.
+  std::vector<Cause> sufficiency_tested;
   /// Disturbances of the flight that were not to be changed: with them what is sufficient cannot be
   /// found.
   std::vector<Cause> not_changed;
-  /// Together these are enough, none of them alone.
+  /// The necessary causes, if each was tested and none is sufficient: it takes them together.
   std::vector<Cause> together;
   /// Without these the estimator survived, but with other random numbers it fails without them too:
   /// they are not named.

@@ -74,6 +74,7 @@ Json json_from(const Explanation& explanation, const std::filesystem::path& fold
           {"from_s", explanation.part.from_s},
           {"to_s", explanation.part.to_s},
           {"sufficient", names_of(explanation.sufficient)},
+          {"sufficiency_tested", names_of(explanation.sufficiency_tested)},
           {"necessary", names_of(explanation.necessary)},
           {"not_changed", names_of(explanation.not_changed)},
           {"together", names_of(explanation.together)},

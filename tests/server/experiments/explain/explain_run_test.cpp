@@ -130,6 +130,18 @@ TEST_F(ExplainRun, TwoCausesTogetherAreNotSufficientAlone) {
   EXPECT_THAT(explanation->necessary, UnorderedElementsAre(Cause::kBlur, Cause::kNoise));
   EXPECT_THAT(explanation->sufficient, IsEmpty());
   EXPECT_THAT(explanation->together, UnorderedElementsAre(Cause::kBlur, Cause::kNoise));
+  EXPECT_EQ(json_from(*explanation, folder()).at("sufficiency_tested").size(), 2U);
+}
+
+/// Of the flight with only one of them nothing is known: that it takes both was not seen.
+TEST_F(ExplainRun, CausesThatWereNotTestedByThemselvesAreNotCalledInsufficient) {
+  const auto explanation = explain(
+      "{ if has noise && ! has blur && ! has drops && ! has faults; then exit 1; fi; "
+      "has blur && has noise; }");
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_THAT(explanation->necessary, UnorderedElementsAre(Cause::kBlur, Cause::kNoise));
+  EXPECT_THAT(explanation->sufficiency_tested, ElementsAre(Cause::kBlur));
+  EXPECT_THAT(explanation->together, IsEmpty());
 }
 
 TEST_F(ExplainRun, OfTwoCausesEachIsEnough) {
@@ -186,6 +198,24 @@ TEST_F(ExplainRun, AFailureThatDoesNotComeAgainIsNotExplained) {
   ASSERT_TRUE(explanation.ok()) << explanation.error().message;
   EXPECT_FALSE(explanation->reproduced);
   EXPECT_THAT(explanation->necessary, IsEmpty());
+}
+
+/// In the part that begins before the failure it does not initialise, which it did in the run.
+TEST_F(ExplainRun, AnotherKindOfFailureIsNotTheFailureOfTheRun) {
+  const fs::path unstarted = folder().parent_path() / "unstarted";
+  fs::copy(run("failed"), unstarted, fs::copy_options::recursive);
+  auto metrics = nlohmann::json::parse(read_text(unstarted / "metrics.json"));
+  metrics["estimators"]["p"]["outcome"] = "NOT_INITIALISED";
+  write_text(unstarted / "metrics.json", metrics.dump());
+  const auto explanation = explain("{ if ! grep -q '\"start_s\": 0' \"$scenario\"; then cp -r '" +
+                                   unstarted.string() + "' \"$4\"; exit; fi; has blur; }");
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message;
+  EXPECT_TRUE(explanation->reproduced);
+  EXPECT_EQ(explanation->part.from_s, 0.0);
+  EXPECT_THAT(explanation->necessary, ElementsAre(Cause::kBlur));
+  ASSERT_GE(explanation->flights.size(), 2U);
+  EXPECT_EQ(explanation->flights[0].score.outcome, evaluation::Outcome::kNotInitialised);
+  EXPECT_GT(explanation->flights[0].part.from_s, 0.0);
 }
 
 TEST_F(ExplainRun, ChanceIsSaid) {
