@@ -1,6 +1,7 @@
 #include "server/runs/run_memory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -191,6 +192,14 @@ std::uint64_t machine_memory_bytes() {
 MemoryBudget MemoryBudget::of_machine(bool views) {
   return {static_cast<std::uint64_t>(kMachineShare * static_cast<double>(machine_memory_bytes())),
           views};
+}
+
+std::uint64_t MemoryBudget::least_machine_bytes(const RunMemory& together) {
+  // The inverse of for_images_bytes(): the caches give way down to half of the limit.
+  const std::uint64_t limit_bytes =
+      std::min(together.images_bytes + together.caches_bytes, 2 * together.images_bytes);
+  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(limit_bytes) / kMachineShare)) +
+         1;
 }
 
 std::uint64_t MemoryBudget::for_images_bytes(std::uint64_t caches_bytes) const {

@@ -35,6 +35,9 @@ class MemoryBudget {
   /// Four fifths of the machine's memory.
   [[nodiscard]] static MemoryBudget of_machine(bool views);
 
+  /// Memory of the smallest machine, or control group, whose budget holds this total [bytes].
+  [[nodiscard]] static std::uint64_t least_machine_bytes(const RunMemory& together);
+
   /// Whether flights that need this total fit.
   [[nodiscard]] bool holds(const RunMemory& together) const;
   /// Whether a flight fits if it is the only one. Errors: kUnsupported "cameras = ...: must ...".

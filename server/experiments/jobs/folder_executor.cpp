@@ -99,7 +99,7 @@ Status FolderExecutor::poll() {
   if (Status status = take_delivered(); !status) return status;
   if (Status status = find_lost(); !status) return status;
   if (options_.supply == nullptr) return {};
-  return options_.supply->keep(jobs_.size(), delivered_, most_memory_);
+  return options_.supply->keep({jobs_.size(), jobs_.size() - flying_, delivered_}, most_memory_);
 }
 
 Status FolderExecutor::take_delivered() {
@@ -169,15 +169,18 @@ Status FolderExecutor::find_lost() {
   for (auto& [id, job] : jobs_) {
     std::string reason;
     bool given_back = false;
+    const bool is_taken = std::binary_search(taken->begin(), taken->end(), id);
     if (!std::binary_search(open->begin(), open->end(), id)) {
       reason = "job " + id + " was removed from outside";
-    } else if (std::binary_search(taken->begin(), taken->end(), id)) {
-      ++flying_;
+    } else if (is_taken) {
       reason = loss(id, job, given_back);
       holders.insert(job.holder.value_or(id));
     }
     // A worker may have delivered it, and ended, after the deliveries were read.
-    if (reason.empty() || folder_.is_delivered(id)) continue;
+    if (reason.empty() || folder_.is_delivered(id)) {
+      if (is_taken) ++flying_;
+      continue;
+    }
     lost.emplace_back(id, reason);
     if (given_back) given_back_ids.insert(id);
   }

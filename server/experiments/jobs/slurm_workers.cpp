@@ -61,10 +61,13 @@ Result<std::string> run_slurm(const std::vector<std::string>& words) {
                    one_line(output->text)};
 }
 
-/// Memory of a task [MiB]: that of a flight, and what the program needs without images and maps.
+/// Memory of a task [MiB]: that of a flight, and what the program needs without images and maps;
+/// and enough for the worker to accept the flight.
 std::uint64_t task_memory_mib(const RunMemory& memory) {
   constexpr std::uint64_t kProgramBytes = std::uint64_t{512} << 20U;
-  return (memory.images_bytes + memory.caches_bytes + kProgramBytes) >> 20U;
+  constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
+  const std::uint64_t needed = memory.images_bytes + memory.caches_bytes + kProgramBytes;
+  return (std::max(needed, MemoryBudget::least_machine_bytes(memory)) + kMib - 1) / kMib;
 }
 
 /// Slurm's reason for a task that could not be started on a node and will not be tried again.
@@ -228,26 +231,27 @@ Status SlurmWorkers::submit(std::size_t tasks, const RunMemory& memory) {
   return {};
 }
 
-Status SlurmWorkers::keep(std::size_t open, std::size_t delivered, const RunMemory& memory) {
+Status SlurmWorkers::keep(const FlightCounts& flights, const RunMemory& memory) {
+  if (flights.untaken < flights.open) fruitless_ = 0;
   const auto now = Clock::now();
   const auto after = [now](double seconds) {
     return now +
            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   };
-  if (open == 0 || now < next_question_) return {};
+  if (flights.untaken == 0 || now < next_question_) return {};
   next_question_ = after(options_.period_s);
   const std::optional<std::size_t> there = tasks();
-  const std::size_t wanted = std::min(open, options_.workers);
+  const std::size_t wanted = std::min(flights.open, options_.workers);
   if (!there || *there >= wanted || now < next_submission_) return {};
-  const bool fruitless = submitted_ && *there == 0 && delivered == delivered_at_submission_;
+  const bool fruitless = submitted_ && *there == 0 && flights.delivered == delivered_at_submission_;
   fruitless_ = fruitless ? fruitless_ + 1 : 0;
   if (fruitless_ >= kMostAttempts) {
     return Error{ErrorCode::kUnsupported,
                  "Slurm's tasks ended " + std::to_string(fruitless_) +
                      " times without a flight; see " + slurm_folder(options_).string()};
   }
-  delivered_at_submission_ = delivered;
-  Status status = submit(std::min(wanted - *there, kMostTasksOfArray), memory);
+  delivered_at_submission_ = flights.delivered;
+  Status status = submit(std::min({wanted - *there, flights.untaken, kMostTasksOfArray}), memory);
   next_submission_ = after(pause_s());
   return status;
 }

@@ -26,11 +26,12 @@ struct SlurmOptions {
   std::function<void(const std::string&)> warn;
 };
 
-/// Keeps as many tasks queued or running as there are flights, up to SlurmOptions::workers. The
-/// queue is only asked which tasks there are: what was flown is known from the job folder alone,
-/// so that a queue that does not answer, or a task that Slurm loses, costs no flight. Tasks that
-/// Slurm holds because it could not launch them are replaced; for what others wait is reported. All
-/// tasks have a name that only this sweep uses, by which they are found after the controller was
+/// Keeps as many tasks queued or running as there are flights, up to SlurmOptions::workers. Nothing
+/// is submitted for flights that a worker has taken: if it was killed, they are free again after
+/// its lease. The queue is only asked which tasks there are: what was flown is known from the job
+/// folder alone, so that a queue that does not answer, or a task that Slurm loses, costs no flight.
+/// Tasks that Slurm holds because it could not launch them are replaced; for what others wait is
+/// reported. All tasks have a name that only this sweep uses, by which they are found after the controller was
 /// restarted.
 class SlurmWorkers : public WorkerSupply {
  public:
@@ -40,7 +41,7 @@ class SlurmWorkers : public WorkerSupply {
 
   /// Errors: kUnsupported if Slurm refuses the first tasks three times, or if tasks end again and
   /// again without a flight.
-  Status keep(std::size_t open, std::size_t delivered, const RunMemory& memory) override;
+  Status keep(const FlightCounts& flights, const RunMemory& memory) override;
   void stop() override;
 
  private:
@@ -68,7 +69,7 @@ class SlurmWorkers : public WorkerSupply {
   bool silent_ = false;     ///< the queue does not answer, which was reported
   bool submitted_ = false;  ///< at least once
   int failures_ = 0;        ///< of submissions, in a row
-  int fruitless_ = 0;       ///< submissions in a row, whose tasks ended without a flight
+  int fruitless_ = 0;       ///< submissions in a row, whose tasks ended without taking a flight
   std::size_t delivered_at_submission_ = 0;
 };
 

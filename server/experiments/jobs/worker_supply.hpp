@@ -8,6 +8,13 @@
 
 namespace overfly::server::experiments {
 
+/// Flights of a job folder.
+struct FlightCounts {
+  std::size_t open = 0;       ///< not over
+  std::size_t untaken = 0;    ///< of these, those that no worker has taken
+  std::size_t delivered = 0;  ///< by workers so far
+};
+
 class WorkerSupply {
  public:
   WorkerSupply() = default;
@@ -16,11 +23,9 @@ class WorkerSupply {
   WorkerSupply& operator=(const WorkerSupply&) = delete;
 
   /// Starts workers that are missing. Called about twice a second.
-  /// @param open  flights that are not over
-  /// @param delivered  flights that workers have delivered so far
   /// @param memory  the most that one of the flights needs
   /// Errors: if workers cannot be had at all.
-  virtual Status keep(std::size_t open, std::size_t delivered, const RunMemory& memory) = 0;
+  virtual Status keep(const FlightCounts& flights, const RunMemory& memory) = 0;
   /// Ends the workers.
   virtual void stop() = 0;
 };

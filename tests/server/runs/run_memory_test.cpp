@@ -40,6 +40,21 @@ TEST(RunMemoryOfEstimators, UsualFlightsFitIntoASmallMachine) {
   EXPECT_TRUE(fits) << fits.error().message;
 }
 
+TEST(MemoryBudget, LeastMachineBytesIsTheSmallestThatHolds) {
+  constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
+  for (const RunMemory& memory : {RunMemory{100 * kMib, 900 * kMib},
+                                  RunMemory{900 * kMib, 900 * kMib},
+                                  RunMemory{7777 * kMib + 1, 1250 * kMib}}) {
+    const auto holds = [&](std::uint64_t machine_bytes) {
+      const auto limit = static_cast<std::uint64_t>(0.8 * static_cast<double>(machine_bytes));
+      return MemoryBudget(limit, false).holds(memory);
+    };
+    const std::uint64_t least = MemoryBudget::least_machine_bytes(memory);
+    EXPECT_TRUE(holds(least)) << memory.images_bytes;
+    EXPECT_FALSE(holds(least - 10)) << memory.images_bytes;
+  }
+}
+
 TEST(RunMemoryOfCameras, CountsWhatOpenGlNeedsForALens) {
   const auto bytes_of = [](const std::string& renderer, const std::string& more) {
     return memory_of(testing::small_scenario(

@@ -81,30 +81,30 @@ constexpr RunMemory kMemory{std::uint64_t{100} << 20U, std::uint64_t{400} << 20U
 
 TEST_F(SlurmWorkersTest, SubmitsWhatIsMissingUpToTheLimit) {
   const auto workers = open(4);
-  ASSERT_TRUE(workers->keep(3, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({3, 3, 0}, kMemory).ok());
   ASSERT_EQ(submissions().size(), 1U);
   EXPECT_THAT(submissions()[0], HasSubstr("--array=0-2 --mem=1012M"));
   EXPECT_THAT(submissions()[0], HasSubstr("--partition=long"));
   EXPECT_THAT(submissions()[0], HasSubstr("--requeue"));
   set_tasks(3);
-  ASSERT_TRUE(workers->keep(3, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({3, 3, 0}, kMemory).ok());
   EXPECT_EQ(submissions().size(), 1U) << "all are there";
-  ASSERT_TRUE(workers->keep(10, 1, kMemory).ok());
+  ASSERT_TRUE(workers->keep({10, 10, 1}, kMemory).ok());
   ASSERT_EQ(submissions().size(), 2U);
   EXPECT_THAT(submissions()[1], HasSubstr("--array=0-0 ")) << "one more, up to four";
-  ASSERT_TRUE(workers->keep(0, 10, kMemory).ok());
+  ASSERT_TRUE(workers->keep({0, 0, 10}, kMemory).ok());
   EXPECT_EQ(submissions().size(), 2U) << "nothing is left to fly";
 }
 
 TEST_F(SlurmWorkersTest, AThousandTasksAreOneArray) {
   const auto workers = open(2500);
-  ASSERT_TRUE(workers->keep(3000, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({3000, 3000, 0}, kMemory).ok());
   EXPECT_THAT(submissions().at(0), HasSubstr("--array=0-999 "));
   set_tasks(1000);
-  ASSERT_TRUE(workers->keep(3000, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({3000, 3000, 0}, kMemory).ok());
   EXPECT_THAT(submissions().at(1), HasSubstr("--array=0-999 "));
   set_tasks(2000);
-  ASSERT_TRUE(workers->keep(3000, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({3000, 3000, 0}, kMemory).ok());
   EXPECT_THAT(submissions().at(2), HasSubstr("--array=0-499 "));
 }
 
@@ -119,9 +119,9 @@ TEST_F(SlurmWorkersTest, TheScriptIsTheWorker) {
 TEST_F(SlurmWorkersTest, TheFirstTasksAreTriedThreeTimes) {
   command("sbatch", "echo 'sbatch: error: invalid partition specified: long' >&2; exit 1");
   const auto workers = open();
-  EXPECT_TRUE(workers->keep(1, 0, kMemory).ok());
-  EXPECT_TRUE(workers->keep(1, 0, kMemory).ok());
-  const Status third = workers->keep(1, 0, kMemory);
+  EXPECT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
+  EXPECT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
+  const Status third = workers->keep({1, 1, 0}, kMemory);
   ASSERT_FALSE(third.ok());
   EXPECT_THAT(third.error().message,
               HasSubstr("sbatch: exit code 1: sbatch: error: invalid partition specified: long"));
@@ -129,26 +129,26 @@ TEST_F(SlurmWorkersTest, TheFirstTasksAreTriedThreeTimes) {
 
 TEST_F(SlurmWorkersTest, LaterRefusalsAreWarningsOnly) {
   const auto workers = open();
-  ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
   command("sbatch", "echo 'sbatch: error: Unable to contact slurm controller' >&2; exit 1");
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(workers->keep(1, i + 1, kMemory).ok());
+  for (std::size_t i = 1; i <= 10; ++i) EXPECT_TRUE(workers->keep({1, 1, i}, kMemory).ok());
   EXPECT_THAT(warnings_, Contains(HasSubstr("Unable to contact slurm controller")));
   command("sbatch", "echo 18");
-  ASSERT_TRUE(workers->keep(1, 20, kMemory).ok());
+  ASSERT_TRUE(workers->keep({1, 1, 20}, kMemory).ok());
   EXPECT_THAT(submissions().back(), HasSubstr("--array=0-0"));
 }
 
 /// While the queue does not answer, nobody knows whether the tasks live: none is added.
 TEST_F(SlurmWorkersTest, ASilentQueueIsReportedOnceAndNothingIsSubmitted) {
   const auto workers = open();
-  ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
   command("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller'; exit 1");
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(workers->keep(4, 0, kMemory).ok());
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(workers->keep({4, 4, 0}, kMemory).ok());
   EXPECT_EQ(submissions().size(), 1U);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("Unable to contact slurm controller")));
   command("squeue", "cat '" + queue().string() + "'");
   set_tasks(1);
-  ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
   EXPECT_THAT(warnings_, Contains("squeue answers again"));
   EXPECT_EQ(submissions().size(), 1U);
 }
@@ -156,9 +156,9 @@ TEST_F(SlurmWorkersTest, ASilentQueueIsReportedOnceAndNothingIsSubmitted) {
 /// A node with an old task of the same number cannot launch it: Slurm holds the task for ever.
 TEST_F(SlurmWorkersTest, TasksThatSlurmCouldNotLaunchAreReplaced) {
   const auto workers = open();
-  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({2, 2, 0}, kMemory).ok());
   write_text(queue(), "17_0|PENDING|launch failed requeued held\n17_1|RUNNING|None\n");
-  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({2, 2, 0}, kMemory).ok());
   EXPECT_THAT(read_text(calls()),
               ::testing::ContainsRegex("scancel --name=overfly-[0-9a-f]+ "
                                        "--state=PENDING 17_0\n"));
@@ -172,14 +172,14 @@ TEST_F(SlurmWorkersTest, SaysForWhatAllTasksWait) {
   const std::string down = "Nodes required for job are DOWN, DRAINED or reserved";
   for (int i = 0; i < 3; ++i) {
     write_text(queue(), "17_0|PENDING|" + down + "\n17_1|PENDING|Priority\n");
-    ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+    ASSERT_TRUE(workers->keep({2, 2, 0}, kMemory).ok());
   }
   EXPECT_THAT(warnings_, ElementsAre("no task runs; Slurm's reason: " + down)) << "once";
   write_text(queue(), "17_0|RUNNING|None\n17_1|PENDING|" + down + "\n");
-  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({2, 2, 0}, kMemory).ok());
   EXPECT_EQ(warnings_.size(), 1U) << "one runs";
   write_text(queue(), "17_0|PENDING|JobHeldUser\n17_1|PENDING|JobHeldUser\n");
-  ASSERT_TRUE(workers->keep(2, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({2, 2, 0}, kMemory).ok());
   EXPECT_EQ(warnings_.back(), "no task runs; Slurm's reason: JobHeldUser");
   EXPECT_TRUE(submissions().empty()) << "what somebody holds is not replaced";
 }
@@ -187,7 +187,7 @@ TEST_F(SlurmWorkersTest, SaysForWhatAllTasksWait) {
 TEST_F(SlurmWorkersTest, OnlyNumbersOfTasksAreCancelled) {
   const auto workers = open();
   write_text(queue(), "--user=root|PENDING|launch failed requeued held\n|||\n\n17_2\n");
-  ASSERT_TRUE(workers->keep(1, 0, kMemory).ok());
+  ASSERT_TRUE(workers->keep({1, 1, 0}, kMemory).ok());
   EXPECT_THAT(read_text(calls()), ::testing::Not(HasSubstr("scancel")));
 }
 
@@ -196,17 +196,43 @@ TEST_F(SlurmWorkersTest, TasksThatEndWithoutAFlightAreAnError) {
   Status status;
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(status.ok());
-    status = workers->keep(2, 0, kMemory);
+    status = workers->keep({2, 2, 0}, kMemory);
   }
   ASSERT_TRUE(status.ok());
-  status = workers->keep(2, 0, kMemory);
+  status = workers->keep({2, 2, 0}, kMemory);
   ASSERT_FALSE(status.ok());
   EXPECT_THAT(status.error().message, HasSubstr("ended 3 times without a flight; see "));
 }
 
+/// Its flight is free again when the lease is over: until then no task could fly anything.
+TEST_F(SlurmWorkersTest, FlightsOfAKilledWorkerAreWaitedFor) {
+  const auto workers = open();
+  for (int killed = 0; killed < 5; ++killed) {
+    ASSERT_TRUE(workers->keep({2, 1, 0}, kMemory).ok());
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(workers->keep({2, 0, 0}, kMemory).ok()) << i;
+  }
+  ASSERT_EQ(submissions().size(), 5U);
+  EXPECT_THAT(submissions().back(), HasSubstr("--array=0-0 ")) << "for the one that is free";
+}
+
+/// Of which a worker keeps a fifth for everything else (MemoryBudget::of_machine).
+TEST_F(SlurmWorkersTest, ATaskHasTheMemoryThatItsWorkerDemands) {
+  constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
+  for (const RunMemory& memory :
+       {kMemory, RunMemory{8000 * kMib, 900 * kMib}, RunMemory{2500 * kMib, 5000 * kMib}}) {
+    const auto workers = open();
+    ASSERT_TRUE(workers->keep({1, 1, 0}, memory).ok());
+    const std::string call = submissions().back();
+    const auto mem_mib = std::stoull(call.substr(call.find("--mem=") + 6));
+    const auto limit_bytes = static_cast<std::uint64_t>(0.8 * static_cast<double>(mem_mib * kMib));
+    EXPECT_TRUE(MemoryBudget(limit_bytes, false).holds(memory)) << call;
+    EXPECT_GE(mem_mib * kMib, memory.images_bytes + memory.caches_bytes + 512 * kMib);
+  }
+}
+
 TEST_F(SlurmWorkersTest, TasksThatDeliverAreFollowedByOthers) {
   const auto workers = open();
-  for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(workers->keep(2, i, kMemory).ok()) << i;
+  for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(workers->keep({2, 2, i}, kMemory).ok()) << i;
   EXPECT_EQ(submissions().size(), 20U);
 }
 
