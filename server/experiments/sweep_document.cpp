@@ -1,6 +1,7 @@
 #include "server/experiments/sweep_document.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -30,6 +31,22 @@ std::vector<Override> changes_from(const Json& object) {
   return changes;
 }
 
+/// from + i * step, which is meant to be decimal: the shortest decimal within the error of the
+/// arithmetic. 0.3, not 0.30000000000000004, which no `skip` and no other sweep would name.
+double value_of_range(double from, double step, std::size_t i) {
+  constexpr int kMostDecimals = 17;
+  const double added = static_cast<double>(i) * step;
+  const double value = from + added;
+  const double error = 2.0 * std::numeric_limits<double>::epsilon() * (std::abs(from) + added);
+  if (error > 1e-6 * step) return value;  // hardly distinct values stay as they are
+  for (int decimals = 0; decimals <= kMostDecimals; ++decimals) {
+    const double scale = std::pow(10.0, decimals);
+    const double rounded = std::round(value * scale) / scale;
+    if (std::abs(rounded - value) <= error) return rounded + 0.0;  // never -0
+  }
+  return value;
+}
+
 /// Values of a range with steps; the end counts if it is met within a billionth of a step.
 std::vector<AxisValue> values_of_range(const std::string& path,
                                        double from,
@@ -38,10 +55,24 @@ std::vector<AxisValue> values_of_range(const std::string& path,
   std::vector<AxisValue> values;
   const auto steps = static_cast<std::size_t>(std::floor((to - from) / step + 1e-9));
   for (std::size_t i = 0; i <= steps; ++i) {
-    const Json value = from + static_cast<double>(i) * step;
+    const Json value = value_of_range(from, step, i);
     values.push_back({value, {{path, value}}});
   }
   return values;
+}
+
+/// Cells are known by their values: two with the same ones would be one.
+Status check_distinct(const SweepAxis& axis, const std::string& values, const std::string& member) {
+  std::set<Json> known;
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    const Json& value = axis.values[i].value;
+    if (known.insert(value).second) continue;
+    return Error{ErrorCode::kInvalidArgument,
+                 values + "." + std::to_string(i) + member + " = " +
+                     (value.is_string() ? value.get<std::string>() : value.dump()) +
+                     ": must differ from those before it"};
+  }
+  return {};
 }
 
 Result<SweepAxis> axis_from(const Json& axis, const std::string& field) {
@@ -54,9 +85,15 @@ Result<SweepAxis> axis_from(const Json& axis, const std::string& field) {
     for (const Json& variant : axis.at("variants")) {
       result.values.push_back({variant.at("value"), changes_from(variant.at("set"))});
     }
+    if (Status status = check_distinct(result, field + ".variants", ".value"); !status) {
+      return status.error();
+    }
   } else if (axis.contains("values")) {
     for (const Json& value : axis.at("values")) {
       result.values.push_back({value, {{result.name, value}}});
+    }
+    if (Status status = check_distinct(result, field + ".values", ""); !status) {
+      return status.error();
     }
   } else {
     const double from = axis.at("from").get<double>();

@@ -31,8 +31,8 @@ struct SlurmOptions {
 /// its lease. The queue is only asked which tasks there are: what was flown is known from the job
 /// folder alone, so that a queue that does not answer, or a task that Slurm loses, costs no flight.
 /// Tasks that Slurm holds because it could not launch them are replaced; for what others wait is
-/// reported. All tasks have a name that only this sweep uses, by which they are found after the controller was
-/// restarted.
+/// reported. All tasks have a name that only this sweep uses, by which they are found after the
+/// controller was restarted.
 class SlurmWorkers : public WorkerSupply {
  public:
   /// Errors: kNotFound if sbatch is missing; kUnreadable if the name of an earlier call is damaged;

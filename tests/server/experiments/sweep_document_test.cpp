@@ -122,6 +122,40 @@ TEST_F(SweepDocument, ALatinHypercubeUsesEachPartOnce) {
   EXPECT_EQ(cells_of(*sweep)->at(3).values, cells->at(3).values) << "the same each time";
 }
 
+TEST_F(SweepDocument, ValuesOfARangeAreTheDecimalsThatItMeans) {
+  const auto values_of = [&](const std::string& range) {
+    std::string text;
+    const auto sweep = loaded(R"("axes": [{"path": "duration_s", )" + range + "}]");
+    EXPECT_TRUE(sweep.ok()) << sweep.error().message;
+    for (const AxisValue& value : sweep->axes[0].values) text += value.value.dump() + " ";
+    return text;
+  };
+  EXPECT_EQ(values_of(R"("from": 0, "to": 1, "step": 0.1)"),
+            "0.0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1.0 ");
+  EXPECT_EQ(values_of(R"("from": -0.3, "to": 0.1, "step": 0.1)"), "-0.3 -0.2 -0.1 0.0 0.1 ");
+  EXPECT_EQ(values_of(R"("from": 1.1, "to": 4.4, "step": 1.1)"), "1.1 2.2 3.3 4.4 ");
+  EXPECT_EQ(values_of(R"("from": 0.001, "to": 0.0035, "step": 0.0005)"),
+            "0.001 0.0015 0.002 0.0025 0.003 0.0035 ");
+  // Those that are exact, or no short decimals, are as computed.
+  EXPECT_EQ(values_of(R"("from": 1234567890123, "to": 1234567890125, "step": 1)"),
+            "1234567890123.0 1234567890124.0 1234567890125.0 ");
+  EXPECT_EQ(values_of(R"("from": 0, "to": 2e-6, "step": 9.5367431640625e-07)"),
+            "0.0 9.5367431640625e-07 1.9073486328125e-06 ");
+  const std::string skipping =
+      R"("axes": [{"path": "duration_s", "from": 0.1, "to": 0.4, "step": 0.1}],
+         "skip": [{"duration_s": 0.3}])";
+  EXPECT_EQ(cells_of(*loaded(skipping))->size(), 3U);
+}
+
+TEST_F(SweepDocument, ValuesOfAnAxisMustDiffer) {
+  EXPECT_THAT(fault_of(R"("axes": [{"name": "air", "variants": [
+                  {"value": "calm", "set": {"seed": 1}}, {"value": "gusts", "set": {"seed": 2}},
+                  {"value": "calm", "set": {"seed": 3}}]}])"),
+              HasSubstr("axes.0.variants.2.value = calm: must differ from those before it"));
+  EXPECT_THAT(fault_of(R"("axes": [{"path": "seed", "values": [1, 2, 1.0]}])"),
+              HasSubstr("axes.0.values.2 = 1.0: must differ from those before it"));
+}
+
 TEST_F(SweepDocument, NamesWhatIsInvalid) {
   EXPECT_THAT(fault_of(R"("axes": [], "repeats": {"most": 0})"), HasSubstr("repeats.most = 0"));
   EXPECT_THAT(fault_of(R"("axes": [], "wrong": 1)"), HasSubstr("wrong"));
