@@ -13,6 +13,7 @@
 #include "server/record/rows/recorded_events.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/truth_samples.hpp"
+#include "server/scenario/document/scenario_list.hpp"
 #include "terrain/sea_level.hpp"
 
 namespace overfly::server {
@@ -83,11 +84,7 @@ Result<std::unique_ptr<TruthSource>> open_log_flight(const Scenario& scenario,
                  "flight.log." + log.log_fields.front() + ": applies to flight logs, and " +
                      log.file.string() + " is a pose file"};
   }
-  if (scenario.start_ns != 0) {
-    return Error{ErrorCode::kInvalidArgument,
-                 "start_s: must be 0 because " + log.file.string() +
-                     " is a flight log: use flight.log.from_s"};
-  }
+  if (Status status = check_start_of_log(scenario); !status) return status.error();
   if (log.camera_poses) {
     return Error{ErrorCode::kInvalidArgument,
                  "flight.log.camera_poses = true: applies to pose files, and " + log.file.string() +

@@ -113,6 +113,14 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
       return Error{ErrorCode::kInvalidArgument,
                    sweep.scenario_file.string() + ": flight: must not be live in a sweep"};
     }
+    // What the first repeat cannot show: neither its world nor its start is changed.
+    if (sweep.repeats.most > 1 && (sweep.repeats.vary_world || sweep.repeats.vary_start_s > 0.0)) {
+      const Result<Scenario> second = scenario_of(sweep, plan.cells_[i], 1);
+      if (!second) {
+        errors.add(plan.cells_[i], second.error());
+        continue;
+      }
+    }
     plan.states_[i].pictures = picture_key(*scenario);
     ++plan.cells_with_pictures_[plan.states_[i].pictures];
     for (const EstimatorSpec& estimator : scenario->estimators) plan.note_estimator(estimator);

@@ -30,7 +30,8 @@ struct DueFlight {
 /// seed of a repeat is also a value of an axis) is due once.
 class SweepPlan {
  public:
-  /// Resolves the first repeat of every cell.
+  /// Resolves the first repeat of every cell, and the second one where it differs in more than the
+  /// seed.
   /// Errors: as scenario_of, for all cells: each different message once, one a line, at most ten;
   /// kCancelled.
   [[nodiscard]] static Result<SweepPlan> make(const Sweep& sweep,

@@ -56,6 +56,7 @@ Status check_log(const Scenario& scenario, const LoggedFlight& log) {
     const fs::path times = log.file.parent_path() / "times.txt";
     return sources.check_place(times, "flight.log.file (a file next to it)");
   }
+  if (Status status = check_start_of_log(scenario); !status) return status;
   const Result<std::vector<fs::path>> files = flight::logs::files_of_log(log.file);
   if (!files) return files.error();
   for (const fs::path& file : *files) {
@@ -161,6 +162,14 @@ Status check_recorded_images(const Scenario& scenario) {
 }
 
 }  // namespace
+
+Status check_start_of_log(const Scenario& scenario) {
+  const auto* log = std::get_if<LoggedFlight>(&scenario.flight);
+  if (log == nullptr || scenario.start_ns == 0 || !flight::is_flight_log(log->file)) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               "start_s: must be 0 because " + log->file.string() +
+                   " is a flight log: use flight.log.from_s"};
+}
 
 Status check_scenario(const Scenario& scenario) {
   std::optional<Error> error;

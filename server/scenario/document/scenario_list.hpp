@@ -35,10 +35,14 @@ struct ScenarioEntry {
 [[nodiscard]] Result<std::filesystem::path> scenario_path(const std::filesystem::path& folder,
                                                           const std::string& name);
 
+/// A flight along a flight log begins at flight.log.from_s instead of start_s.
+/// Errors: kInvalidArgument.
+[[nodiscard]] Status check_start_of_log(const Scenario& scenario);
+
 /// Checks what the schema cannot: whether the scenario's `sources` permit the files that it names,
 /// and whether they exist.
-/// Errors: as SourcePolicy::check and terrain::check_world_sources, every invalid field on its own
-/// line; kNotFound if files are absent and nothing else is wrong.
+/// Errors: as check_start_of_log, SourcePolicy::check and terrain::check_world_sources, every
+/// invalid field on its own line; kNotFound if files are absent and nothing else is wrong.
 [[nodiscard]] Status check_scenario(const Scenario& scenario);
 
 }  // namespace overfly::server

@@ -287,6 +287,20 @@ TEST_F(FlySweep, AnErrorOfAllCellsIsNamedOnce) {
   EXPECT_EQ(message.find("camera.rate_hz"), message.rfind("camera.rate_hz"));
 }
 
+TEST_F(FlySweep, AnErrorOfLaterRepeatsIsNamedBeforeTheFirstFlight) {
+  write_program();
+  write_text(own_folder() / "world.json", "{}");
+  const auto flown = fly(
+      sweep(R"("set": {"world": {"manifest": ")" + (own_folder() / "world.json").string() + R"("}},
+         "axes": [{"path": "flight.course.airspeed_m_s", "values": [10, 15]}],
+         "repeats": {"most": 2, "vary_world": true})"));
+  ASSERT_FALSE(flown.ok());
+  EXPECT_THAT(flown.error().message,
+              HasSubstr("repeats.vary_world = true: must be false with a world of files (in 2 "
+                        "cells; the first is flight.course.airspeed_m_s = 10)"));
+  EXPECT_EQ(flights(), 0U);
+}
+
 TEST_F(FlySweep, TheTimeLeftIsUnknownBeforeTheFirstFlightIsOver) {
   write_program();
   SweepOptions one_at_once = options(1);

@@ -111,6 +111,10 @@ TEST(ScenarioFlight, ChecksTheFilesThatAMappingNames) {
       resolve_scenario(document_of(R"({"file": "log.json"})"), {}, folder.path() / "data");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message;
   EXPECT_TRUE(check_scenario(*scenario).ok());
+  Scenario late = *scenario;
+  late.start_ns = 1;
+  EXPECT_THAT(check_scenario(late).error().message,
+              HasSubstr("log.json is a flight log: use flight.log.from_s"));
   scenario->sources = SourcePolicy::inside({folder.path() / "data"});
   const Status outside = check_scenario(*scenario);
   ASSERT_FALSE(outside.ok());
