@@ -11,6 +11,7 @@ enum ExitCode : int {
   kExitUsage = 2,        ///< invalid option, file or scenario
   kExitCancelled = 3,    ///< stopped by SIGINT or SIGTERM; results so far are kept
   kExitUnsupported = 4,  ///< not supported by this build or machine
+  kExitIncomplete = 5,   ///< a sweep is over, but some of its flights failed
 };
 
 [[nodiscard]] int exit_code_of(ErrorCode code);

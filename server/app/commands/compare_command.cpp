@@ -49,6 +49,23 @@ bool print_judged(const experiments::JudgedCondition& condition) {
   return condition.verdict->holds;
 }
 
+Status write_junit(const CompareArguments& arguments,
+                   const std::vector<experiments::JudgedCondition>& judged) {
+  if (arguments.junit.empty()) return {};
+  Status status = server::write_whole(arguments.junit, experiments::junit_from(judged));
+  return status ? status : status.error().in("--junit");
+}
+
+/// Without pairs no condition can be evaluated.
+int report_no_pairs(const CompareArguments& arguments) {
+  const Error none{ErrorCode::kNotFound,
+                   arguments.sweep + " and " + arguments.baseline + ": " + experiments::kNoPairs};
+  std::vector<experiments::JudgedCondition> judged;
+  for (const std::string& condition : arguments.conditions) judged.push_back({condition, none});
+  if (Status status = write_junit(arguments, judged); !status) (void)report(status.error());
+  return report(none);
+}
+
 int compare(const CompareArguments& arguments) {
   const auto conditions = parsed_conditions(arguments.conditions);
   if (!conditions) return report(conditions.error());
@@ -56,10 +73,7 @@ int compare(const CompareArguments& arguments) {
   const auto paired =
       experiments::pair_sweeps(arguments.sweep, arguments.baseline, arguments.estimator, mode);
   if (!paired) return report(paired.error());
-  if (paired->pairs == 0) {
-    return report({ErrorCode::kNotFound,
-                   arguments.sweep + " and " + arguments.baseline + ": " + experiments::kNoPairs});
-  }
+  if (paired->pairs == 0) return report_no_pairs(arguments);
   std::cout << counted(paired->pairs, "flight") << " in both sweeps; " << paired->without_pair
             << " without a pair and " << paired->failed << " that failed are left out\n";
   std::vector<experiments::JudgedCondition> judged;
@@ -68,13 +82,10 @@ int compare(const CompareArguments& arguments) {
     judged.push_back({condition.text(), condition.evaluate(paired->flights, paired->baseline)});
     failed = print_judged(judged.back()) || failed;
   }
-  if (!arguments.junit.empty()) {
-    const std::string xml = experiments::junit_from(judged);
-    if (Status status = server::write_whole(arguments.junit, xml); !status) {
-      // Not kExitFailure, which says that a condition holds.
-      (void)report(status.error().in("--junit"));
-      return kExitUsage;
-    }
+  if (Status status = write_junit(arguments, judged); !status) {
+    // Not kExitFailure, which says that a condition holds.
+    (void)report(status.error());
+    return kExitUsage;
   }
   return failed ? kExitFailure : kExitOk;
 }

@@ -240,7 +240,7 @@ int sweep(const SweepArguments& arguments) {
               << flown->progress.most << "; the same command continues\n";
     return kExitCancelled;
   }
-  return flown->progress.failed > 0 ? kExitFailure : kExitOk;
+  return flown->progress.failed > 0 ? kExitIncomplete : kExitOk;
 }
 
 void add_work_command(CLI::App& sweep_command, int& exit_code) {

@@ -228,6 +228,17 @@ TEST_F(SweepCommand, ComparesTwoSweepsFlightByFlight) {
                                              path("absent/junit.xml")});
   EXPECT_EQ(unwritten.exit_code, 2) << "1 says that a condition holds";
   EXPECT_THAT(unwritten.err, HasSubstr("--junit: "));
+  // Other seeds: no flight has a pair.
+  fs::remove(path("junit.xml"));
+  results = read_text(path("s5/results.jsonl"));
+  for (std::size_t at = 0; (at = results.find("\"seed\":", at)) != std::string::npos; at += 9) {
+    results.insert(at + 7, "9");
+  }
+  write_text(path("s5/results.jsonl"), results);
+  const Outcome unpaired = compare({"success_rate < 0.8"});
+  EXPECT_EQ(unpaired.exit_code, 2);
+  EXPECT_THAT(unpaired.err, HasSubstr("no flight was completed in both"));
+  EXPECT_THAT(read_text(path("junit.xml")), HasSubstr(R"(tests="1" failures="0" errors="1")"));
 }
 
 TEST_F(SweepCommand, AnEstimatorWhoseProgramIsMissingIsNoResult) {
@@ -246,7 +257,7 @@ TEST_F(SweepCommand, AnEstimatorWhoseProgramIsMissingIsNoResult) {
   EXPECT_THAT(planned.err, HasSubstr("warning: estimator late: " + reason));
   for (int call = 0; call < 2; ++call) {  // The second one tries again.
     const Outcome flown = overfly_program(words);
-    EXPECT_EQ(flown.exit_code, 1);
+    EXPECT_EQ(flown.exit_code, 5);
     EXPECT_THAT(flown.err,
                 AllOf(HasSubstr("warning: estimator late never ran: "), HasSubstr(reason)));
     EXPECT_THAT(flown.out, HasSubstr("1 not flown"));
