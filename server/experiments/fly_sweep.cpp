@@ -12,6 +12,7 @@
 
 #include "server/experiments/flights/flight_files.hpp"
 #include "server/experiments/flights/flight_process.hpp"
+#include "server/experiments/keys/plain_numbers.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/record/run_lock.hpp"
@@ -34,7 +35,7 @@ struct Flying {
 };
 
 std::string flight_text(const Json& cell, int repeat) {
-  return cell.dump() + " " + std::to_string(repeat);
+  return with_plain_numbers(cell).dump() + " " + std::to_string(repeat);
 }
 
 /// Why an estimator has no result of a completed flight; empty if it has.

@@ -84,14 +84,41 @@ void add_flight(const SweepResult& result, RunReader& runs, SweepScores& scores)
   scores.flights.push_back(std::move(flight));
 }
 
-std::vector<Json> sorted_cells(const SweepScores& scores) {
+/// Axis -> its values that are texts, in the sweep's order.
+using TextOrder = std::map<std::string, std::vector<std::string>>;
+
+TextOrder text_order_of(const Json& sweep) {
+  TextOrder order;
+  const auto found = sweep.find("axis_values");
+  if (found == sweep.end() || !found->is_object()) return order;
+  for (const auto& [axis, values] : found->items()) {
+    for (const Json& value : values) {
+      if (value.is_string()) order[axis].push_back(value.get<std::string>());
+    }
+  }
+  return order;
+}
+
+bool comes_before(const Json& a, const Json& b, const std::vector<std::string>& texts) {
+  if (!a.is_string() || !b.is_string()) return a < b;
+  const auto place_of = [&](const Json& value) {
+    return std::find(texts.begin(), texts.end(), value.get_ref<const std::string&>());
+  };
+  const auto place_a = place_of(a);
+  const auto place_b = place_of(b);
+  return place_a != place_b ? place_a < place_b : a < b;
+}
+
+std::vector<Json> sorted_cells(const SweepScores& scores, const TextOrder& order) {
   std::vector<Json> cells;
   for (const FlightScore& flight : scores.flights) cells.push_back(flight.cell);
   const auto before = [&](const Json& a, const Json& b) {
     for (const ShownAxis& axis : scores.axes) {
       const Json left = a.value(axis.name, Json());
       const Json right = b.value(axis.name, Json());
-      if (left != right) return left < right;
+      if (left == right) continue;
+      const auto texts = order.find(axis.name);
+      return texts == order.end() ? left < right : comes_before(left, right, texts->second);
     }
     return a < b;
   };
@@ -116,12 +143,11 @@ Result<SweepScores> read_sweep_scores(const fs::path& folder, const std::atomic<
   const SweepExtent extent(*sweep);
   scores.estimators = extent.estimators();
   RunReader runs(folder);
-  std::size_t others = 0;
   for (const SweepResult* result : results->newest()) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     if (!result->cell.is_object()) continue;
     if (!extent.contains(*result)) {
-      ++others;
+      ++scores.former_results;
       continue;
     }
     if (result->completed()) {
@@ -130,14 +156,10 @@ Result<SweepScores> read_sweep_scores(const fs::path& folder, const std::atomic<
       ++scores.failed;
     }
   }
-  if (others > 0) {
-    scores.problems.push_back(std::to_string(others) +
-                              " results of flights that the sweep no longer has");
-  }
   if (scores.flights.empty()) {
     return Error{ErrorCode::kNotFound, folder.string() + ": has no completed flight"};
   }
-  scores.cells = sorted_cells(scores);
+  scores.cells = sorted_cells(scores, text_order_of(*sweep));
   return scores;
 }
 

@@ -37,10 +37,12 @@ struct SweepScores {
   std::string version;  ///< of the program that flew last
   std::vector<ShownAxis> axes;
   std::vector<std::string> estimators;  ///< names, in the sweep's order
-  std::vector<nlohmann::json> cells;    ///< of the flights, in ascending order of the axes' values
+  /// Of the flights, in ascending order of the axes' values; texts in the sweep's order.
+  std::vector<nlohmann::json> cells;
   std::vector<FlightScore> flights;
   std::size_t failed = 0;             ///< flights without a result
-  std::vector<std::string> problems;  ///< what is left out, with the reason
+  std::size_t former_results = 0;     ///< of flights that the sweep no longer has; left out
+  std::vector<std::string> problems;  ///< what cannot be read and is left out, with the reason
 };
 
 /// Reads sweep.json, results.jsonl and the metrics of the newest result of every flight.

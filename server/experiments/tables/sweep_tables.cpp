@@ -65,7 +65,8 @@ Json fix_drift_json(const CellErrors& errors) {
 }
 
 Json errors_json(const CellErrors& errors) {
-  return {{"position_m", spread_json(errors.position_m)},
+  return {{"flights", errors.flights},
+          {"position_m", spread_json(errors.position_m)},
           {"rotation_deg", spread_json(errors.rotation_deg)},
           {"horizontal_m", spread_json(errors.horizontal_m)},
           {"vertical_m", spread_json(errors.vertical_m)},
@@ -252,6 +253,7 @@ Json json_from(const SweepTables& tables) {
   return {{"title", tables.scores.title},
           {"version", tables.scores.version},
           {"failed", tables.scores.failed},
+          {"former_results", tables.scores.former_results},
           {"problems", tables.scores.problems},
           {"rows", std::move(rows)},
           {"conventions", std::move(conventions)}};

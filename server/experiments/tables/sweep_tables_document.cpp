@@ -44,7 +44,8 @@ CellMedians cell_medians(const CellRows& rows, std::size_t convention, Quantity 
   return medians;
 }
 
-/// "1.23", with the flights that count if others do not, and a dagger if a baseline is as good.
+/// "1.23", with the flights that count if others do not, and a dagger if a baseline is as good: if
+/// only the baseline has a value, too.
 TableCell median_cell(const CellRows& rows,
                       const CellMedians& medians,
                       std::size_t i,
@@ -53,7 +54,11 @@ TableCell median_cell(const CellRows& rows,
   const CellScores* const row = rows[i];
   if (row == nullptr) return {"", false};
   const CellErrors& errors = row->errors[convention];
-  if (!medians.values[i]) return {no_value_text(errors), false};
+  if (!medians.values[i]) {
+    const bool beaten =
+        errors.flights == 0 && !row->baseline && std::isfinite(medians.best_baseline);
+    return {no_value_text(errors) + (beaten ? " †" : ""), false};
+  }
   const double value = *medians.values[i];
   std::string text = error_number(value);
   const std::size_t counted = (errors.*quantity)->flights;
@@ -102,7 +107,8 @@ DocumentSection error_section(const SweepTables& tables, std::size_t convention)
       "Bold: the lowest of the cell. X: no flight counts; -: the alignment does not determine the "
       "error. (2/3): 2 of 3 flights count."};
   if (has_baseline(tables)) {
-    section.notes.push_back("†: the best baseline of the cell is at least as good.");
+    section.notes.push_back(
+        "†: the best baseline of the cell is at least as good, or only baselines have a value.");
   }
   return section;
 }
@@ -306,6 +312,10 @@ TableDocument document_from(const SweepTables& tables, const TableOptions& optio
       ". Overfly " + scores.version + "."};
   for (const std::string& problem : scores.problems) {
     document.paragraphs.push_back("Left out: " + problem);
+  }
+  if (scores.former_results > 0) {
+    document.paragraphs.push_back("Left out: " + counted(scores.former_results, "result") +
+                                  " of flights that the sweep no longer has");
   }
   for (std::size_t i = 0; i < all_conventions().size(); ++i) {
     document.sections.push_back(error_section(tables, i));

@@ -173,7 +173,8 @@ std::string markdown_from(const TableDocument& document) {
 
 std::string latex_from(const TableDocument& document) {
   std::string text = "% " + escaped(document.title, [](char) { return std::string_view(); }) +
-                     "\n% Needs \\usepackage{booktabs}.\n\n";
+                     "\n% Needs \\usepackage{booktabs}.\n\n" +
+                     joined(document.paragraphs, "", "\n\n", latex_text);
   for (const DocumentSection& section : document.sections) text += latex_table(section);
   return text;
 }

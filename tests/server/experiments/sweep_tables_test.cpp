@@ -4,118 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <optional>
-
-#include "server/scoring/run_metrics_json.hpp"
-#include "tests/support/support.hpp"
+#include "tests/server/experiments/sweep_tables_fixture.hpp"
 
 namespace overfly::server::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using evaluation::AlignmentMode;
 using evaluation::Outcome;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
-
-constexpr double kPathM = 1000.0;
-
-/// What one estimator does in one flight. Without a position error it does not initialise.
-struct Made {
-  std::string estimator;
-  double height_m = 0.0;
-  int repeat = 0;
-  std::optional<double> position_m;
-  std::optional<double> rotation_deg;
-  Outcome outcome = Outcome::kCompleted;
-  std::string type = "process";
-  std::vector<double> nees = {};  ///< of the positions, if it states covariances
-  std::vector<evaluation::FixDrift> fix_drift = {};
-  bool moves = true;         ///< false: Sim(3) does not determine its errors
-  double start_scale = 1.0;  ///< of init_scale; that of Sim(3) is 1
-};
-
-evaluation::AlignmentScore alignment(AlignmentMode mode, const Made& made, double factor) {
-  evaluation::AlignmentScore score;
-  score.mode = mode;
-  score.position_m.rmse = factor * *made.position_m;
-  score.position_rmse_hold_m = 2.0 * score.position_m.rmse;
-  score.horizontal_rmse_m = 0.6 * score.position_m.rmse;
-  score.vertical_rmse_m = 0.8 * score.position_m.rmse;
-  score.fix_drift = made.fix_drift;
-  if (!made.nees.empty()) {
-    score.consistency.emplace().position = evaluation::nees_of(made.nees, 3);
-  }
-  if (made.rotation_deg) {
-    score.rotation_deg.emplace().rmse = *made.rotation_deg;
-    score.rotation_euler_norm_deg.emplace().rmse = 1.5 * *made.rotation_deg;
-  }
-  return score;
-}
-
-class SweepTablesTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::ofstream(folder_ / "sweep.json")
-        << Json{{"title", "Made | up"},
-                {"version", "0.1 abc"},
-                {"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
-                {"estimator_names", {"one", "two", "hold"}}};
-  }
-
-  void add(const Made& made, const std::string& key = "", std::uint64_t first_seed = 1) {
-    const std::string id =
-        key.empty() ? "r" + std::to_string(number_) : key + std::to_string(number_);
-    ++number_;
-    RunMetrics metrics;
-    metrics.flight.path_length_m = kPathM;
-    EstimatorMetrics& estimator = metrics.estimators[made.estimator];
-    estimator.type = made.type;
-    estimator.score.outcome = made.outcome;
-    if (made.position_m) {
-      estimator.score.initialised_at_s = 1.0;
-      estimator.score.alignments[AlignmentMode::kInitScale] =
-          alignment(AlignmentMode::kInitScale, made, 1.0);
-      if (made.moves) {
-        estimator.score.alignments[AlignmentMode::kSim3] =
-            alignment(AlignmentMode::kSim3, made, 0.1);
-      }
-      estimator.score.alignments[AlignmentMode::kInitScale].S_world_vo.scale = made.start_scale;
-    }
-    fs::create_directories(folder_ / "runs" / id);
-    std::ofstream(folder_ / "runs" / id / "metrics.json") << json_from(metrics);
-    std::ofstream(folder_ / "results.jsonl", std::ios::app)
-        << Json{{"key", id},
-                {"cell", {{"h", made.height_m}}},
-                {"repeat", made.repeat},
-                {"seed", first_seed + static_cast<std::uint64_t>(made.repeat)},
-                {"estimator", made.estimator},
-                {"run", "runs/" + id},
-                {"status", "completed"},
-                {"error", ""},
-                {"outcome", evaluation::to_string(made.outcome)},
-                {"duration_s", 1.0}}
-        << "\n";
-  }
-
-  SweepTables tables(const TableOptions& options = {}) {
-    Result<SweepScores> scores = read_sweep_scores(folder_);
-    EXPECT_TRUE(scores) << (scores ? "" : scores.error().message);
-    Result<SweepTables> tables = sweep_tables(std::move(*scores), options);
-    EXPECT_TRUE(tables) << (tables ? "" : tables.error().message);
-    return std::move(*tables);
-  }
-  std::string markdown(const TableOptions& options = {}) {
-    return markdown_from(document_from(tables(options), options));
-  }
-
-  overfly::testing::TemporaryFolder temporary_;
-  const fs::path folder_ = temporary_.path();
-  int number_ = 0;
-};
 
 TEST_F(SweepTablesTest, HighlightsTheLowestAndMarksCellsWithoutACountingFlight) {
   add({"one", 50, 0, 2.0, 0.1});
@@ -153,6 +51,7 @@ TEST_F(SweepTablesTest, AnXEntersNoMedian) {
   add({"one", 50, 2, std::nullopt, std::nullopt, Outcome::kNotInitialised});
   const SweepTables made = tables();
   ASSERT_EQ(made.rows.size(), 1U);
+  EXPECT_EQ(json_from(made).at("rows").at(0).at("errors").at("sim3").at("flights"), 2);
   const CellScores& row = made.rows[0];
   EXPECT_EQ(row.flights, 3);
   EXPECT_EQ(row.initialised, 2);
@@ -235,6 +134,17 @@ TEST_F(SweepTablesTest, MarksEstimatorsThatDoNotBeatABaseline) {
   EXPECT_THAT(text, HasSubstr("the best baseline of the cell is at least as good"));
 }
 
+TEST_F(SweepTablesTest, AnEstimatorWithoutAValueDoesNotBeatABaselineEither) {
+  add({"one", 50, 0, std::nullopt, std::nullopt, Outcome::kNotInitialised});
+  add({"two", 50, 0, 1.0, std::nullopt});  // its rotation is not determined
+  add({"hold", 50, 0, 4.0, 0.3, Outcome::kCompleted, "baseline_hold"});
+  add({"one", 100, 0, std::nullopt, std::nullopt, Outcome::kNotInitialised});
+  add({"hold", 100, 0, std::nullopt, std::nullopt, Outcome::kNotInitialised, "baseline_hold"});
+  const std::string text = markdown();
+  EXPECT_THAT(text, HasSubstr("| 50 | X † | **2.00** | 8.00 | X † | - | **0.450** |"));
+  EXPECT_THAT(text, HasSubstr("| 100 | X |  | X | X |  | X |"));
+}
+
 TEST_F(SweepTablesTest, SaysWhatAnAlignmentDoesNotDetermine) {
   add({"one", 50, 0, 1.0, std::nullopt});
   add({"two", 50, 0, 1.0, 0.1});
@@ -280,35 +190,6 @@ TEST_F(SweepTablesTest, NeedsMoreThanEqualSignsOfFewCells) {
   EXPECT_EQ(tables().differences[0].front().verdict, DifferenceVerdict::kNotDecided);
 }
 
-TEST_F(SweepTablesTest, LeavesOutFlightsThatTheSweepNoLongerHas) {
-  std::ofstream(folder_ / "sweep.json")
-      << Json{{"axes", Json::array({{{"path", "h"}, {"label", "Height"}, {"unit", "m"}}})},
-              {"axis_values", {{"h", {50, 100}}}},
-              {"repeats", {{"most", 2}}},
-              {"skip", Json::array({{{"h", {{"min", 80}}}}})},
-              {"estimator_names", {"one"}}};
-  add({"one", 50, 0, 1.0, 0.1});
-  add({"one", 50, 1, 3.0, 0.1});
-  add({"one", 50, 2, 90.0, 0.1});   // a repeat of an earlier version of the sweep
-  add({"one", 150, 0, 90.0, 0.1});  // another height
-  add({"one", 100, 0, 90.0, 0.1});  // one that is skipped now
-  add({"two", 50, 0, 90.0, 0.1});   // another estimator
-  const SweepTables made = tables();
-  ASSERT_EQ(made.rows.size(), 1U);
-  EXPECT_EQ(made.rows[0].estimator, "one");
-  EXPECT_EQ(made.rows[0].flights, 2);
-  EXPECT_THAT(markdown(), HasSubstr("4 results of flights that the sweep no longer has"));
-}
-
-TEST_F(SweepTablesTest, TakesTheNewestResultOfAFlight) {
-  add({"one", 50, 0, 7.0, 0.1}, "z");      // an older version's, with a key that sorts last
-  add({"one", 50, 0, 1.0, 0.1}, "a", 77);  // also with another seed of the scenario
-  const SweepTables made = tables();
-  ASSERT_EQ(made.rows.size(), 1U);
-  EXPECT_EQ(made.rows[0].flights, 1);
-  EXPECT_DOUBLE_EQ(made.rows[0].errors[1].position_m->quartiles.median, 0.1);
-}
-
 TEST_F(SweepTablesTest, ShowsPublishedErrorsAndWhetherTheOrderIsTheSame) {
   add({"one", 50, 0, 2.0, 0.1});
   add({"two", 50, 0, 1.0, 0.3});
@@ -341,16 +222,6 @@ TEST_F(SweepTablesTest, RefusesPublishedErrorsOfAnotherLength) {
   ASSERT_FALSE(published);
   EXPECT_THAT(published.error().message, HasSubstr("published.json"));
   EXPECT_THAT(published.error().message, HasSubstr("position_m"));
-}
-
-TEST_F(SweepTablesTest, LeavesOutRunsThatCannotBeRead) {
-  add({"one", 50, 0, 2.0, 0.1});
-  add({"one", 100, 0, 2.0, 0.1});
-  std::ofstream(folder_ / "runs" / "r1" / "metrics.json") << "{";
-  const SweepTables made = tables();
-  EXPECT_EQ(made.rows.size(), 1U);
-  ASSERT_EQ(made.scores.problems.size(), 1U);
-  EXPECT_THAT(made.scores.problems[0], HasSubstr("metrics.json"));
 }
 
 TEST_F(SweepTablesTest, EscapesTextInEveryFormat) {

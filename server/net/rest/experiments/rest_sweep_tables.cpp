@@ -99,7 +99,9 @@ Result<HttpResponse> tables_of(const SweepRoutes& routes,
   }
   auto scores = experiments::read_sweep_scores(routes.folder / name, cancel);
   if (!scores) return scores.error();
-  scores->problems.clear();  // they name folders of this machine
+  for (std::string& problem : scores->problems) {
+    problem = shown_without(routes.folder, "", std::move(problem));
+  }
   const auto tables = experiments::sweep_tables(std::move(*scores), query.options);
   if (!tables) return tables.error();
   const TextKind kind = text_kind_of(query.format);

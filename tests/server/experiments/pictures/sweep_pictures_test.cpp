@@ -98,6 +98,16 @@ TEST_F(SweepPictures, AFlightForAnAddedEstimatorKeepsThemForTheNextOne) {
               ElementsAre("adds"));
 }
 
+/// The whole numbers of a range are the same values as in the results of the first flights.
+TEST_F(SweepPictures, AnAddedEstimatorIsRecognisedOnRangesToo) {
+  Sweep range = sweep(
+      R"("axes": [{"path": "flight.course.airspeed_m_s", "from": 10, "to": 25, "step": 15}])");
+  EXPECT_THAT(fly_with_cache(range), ElementsAre("none", "none"));
+  range.changes.back().value = nlohmann::json::parse(
+      R"([{"name": "p", "type": "perfect"}, {"name": "q", "type": "perfect"}])");
+  EXPECT_THAT(fly_with_cache(range), ElementsAre("adds", "adds"));
+}
+
 TEST_F(SweepPictures, CountsPicturesAndWarnsOnceOfAProblem) {
   const Sweep two = sweep(R"("axes": [], "repeats": {"most": 3})");
   SweepOptions with_cache = options(1);

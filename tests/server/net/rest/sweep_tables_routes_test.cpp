@@ -124,5 +124,19 @@ TEST_F(SweepTablesRoutesTest, AFlightWhoseScoresAreGoneIsNamed) {
   EXPECT_THAT(gone.body, Not(HasSubstr(server_->folder().string())));
 }
 
+TEST_F(SweepTablesRoutesTest, TablesSayWhatIsLeftOut) {
+  const fs::path run = fs::directory_iterator(server_->folder() / "sweeps/seeds/runs")->path();
+  fs::remove(run / "metrics.json");
+  for (const char* format : {"markdown", "latex", "html"}) {
+    const Answer answer = tables(std::string("?format=") + format);
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    EXPECT_THAT(answer.body, HasSubstr("Left out: seeds/runs/")) << format;
+    EXPECT_THAT(answer.body, Not(HasSubstr(server_->folder().string()))) << format;
+  }
+  const json table = ask(server_->port(), "GET", std::string(kSweepRoute) + "/seeds").json();
+  EXPECT_EQ(table.at("table").at("unreadable"), 1);
+  EXPECT_EQ(table.at("table").at("former_results"), 0);
+}
+
 }  // namespace
 }  // namespace overfly::testing
