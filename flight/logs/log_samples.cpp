@@ -62,11 +62,12 @@ std::size_t sort_attitudes(std::vector<LogAttitude>& attitudes) {
   return count - attitudes.size();
 }
 
-/// Positions of a boot with increasing times, as latitude and longitude where the origin is known.
-void take_positions(const SampleKeeper& kept, std::uint32_t boot, LogSamples& samples) {
+/// Positions of the chosen boot with increasing times, as latitude and longitude where the origin
+/// is known.
+void take_positions(const SampleKeeper& kept, LogSamples& samples) {
   std::size_t out_of_order = 0;
   for (const LoggedPosition& position : kept.positions) {
-    if (position.time.boot != boot) continue;
+    if (position.time.boot != samples.boot) continue;
     const std::int64_t t_ns = position.time.t_ns;
     if (!samples.positions.empty() && t_ns <= samples.positions.back().t_ns) {
       ++out_of_order;
@@ -98,13 +99,13 @@ Result<LogSamples> read_log_samples(const OpenedLog& log,
   Result<LoggedTruth> truth = read_truth_samples(log, request, kept, cancel);
   if (!truth) return truth.error();
   LogSamples samples{std::move(*truth), {}, {}};
-  const std::uint32_t boot = main_boot(kept.positions, samples.warnings);
-  samples.attitudes = std::move(kept.attitudes[boot]);
+  samples.boot = main_boot(kept.positions, samples.warnings);
+  samples.attitudes = std::move(kept.attitudes[samples.boot]);
   if (const std::size_t doubled = sort_attitudes(samples.attitudes); doubled > 0) {
     samples.warnings.push_back(std::to_string(doubled) +
                                " attitudes were left out: a time that another one has");
   }
-  take_positions(kept, boot, samples);
+  take_positions(kept, samples);
   return samples;
 }
 

@@ -46,31 +46,22 @@ std::optional<FlightEvent> flight_event(const LogEvent& event) {
 
 }  // namespace
 
-std::uint32_t main_boot(const logs::OpenedLog& log, const std::string& vehicle) {
-  const logs::BootInfo* most = nullptr;
-  for (const logs::BootInfo& boot : log.boots) {
-    if (boot.vehicle != vehicle) continue;
-    if (most == nullptr || boot.messages > most->messages) most = &boot;
-  }
-  return most != nullptr ? most->number : 0;
-}
-
 std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
                                    const std::string& source,
+                                   std::uint32_t boot,
                                    std::int64_t begin_ns,
                                    std::int64_t end_ns) {
   const auto stream = std::find_if(log.streams.begin(), log.streams.end(), [&](const auto& info) {
     return info.description.name == source;
   });
   const std::string vehicle = stream != log.streams.end() ? stream->description.vehicle : "";
-  const std::uint32_t run = main_boot(log, vehicle);
   std::vector<FlightEvent> events;
   std::map<FlightEventKind, FlightEvent> in_force;
   std::map<std::int64_t, int> items_at;
   std::vector<const LogEvent*> own;
   for (const auto* list : {&log.events_before, &log.events}) {
     for (const LogEvent& event : *list) {
-      if (!event.time || event.vehicle != vehicle || event.time->boot != run) continue;
+      if (!event.time || event.vehicle != vehicle || event.time->boot != boot) continue;
       own.push_back(&event);
       const auto kept = flight_event(event);
       if (kept && kept->kind == FlightEventKind::kMissionItem) ++items_at[event.time->t_ns];

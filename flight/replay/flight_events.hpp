@@ -17,18 +17,16 @@ namespace overfly::flight {
 inline constexpr std::size_t kMaxOtherEvents = 500;
 
 /// The events of one vehicle in a part of its flight, by time from `begin_ns`. The mode and the
-/// mission item that are in force at the beginning come at 0. Of a clock that starts again, the run
-/// with the most messages is taken. Mission items listed at one instant are an upload, and left
-/// out.
+/// mission item that are in force at the beginning come at 0. Mission items listed at one instant
+/// are an upload, and left out.
 /// @param source  stream of the flight's positions
+/// @param boot    the run of the vehicle's clock that is flown, as LoggedTruth::boot
 /// @param begin_ns, end_ns  by the vehicle's clock
 [[nodiscard]] std::vector<FlightEvent> events_of(const logs::OpenedLog& log,
                                                  const std::string& source,
+                                                 std::uint32_t boot,
                                                  std::int64_t begin_ns,
                                                  std::int64_t end_ns);
-
-/// Number of the run of a vehicle's clock with the most messages.
-[[nodiscard]] std::uint32_t main_boot(const logs::OpenedLog& log, const std::string& vehicle);
 
 /// The same flight with events and the aircraft's sensors.
 /// @param events   by time

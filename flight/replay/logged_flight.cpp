@@ -231,9 +231,11 @@ void warn_of_sea_level(const LogFlightOptions& options,
 
 SensorRequest sensor_request(const LogFlightOptions& options,
                              const std::string& source,
+                             std::uint32_t boot,
                              std::int64_t begin_ns,
                              std::int64_t end_ns) {
   return {source,
+          boot,
           begin_ns,
           end_ns,
           options.geoid_separation_m.value_or(0.0),
@@ -264,10 +266,10 @@ Result<std::unique_ptr<TruthSource>> fly_smoothed(const logs::OpenedLog& opened,
                             log->position_source + " with the attitude of " + log->attitude_source +
                             ", smoothed" + (options.rebase ? ", moved" : "");
   std::vector<FlightEvent> events =
-      events_of(opened, log->position_source, log->begin_ns(), log->end_ns());
+      events_of(opened, log->position_source, log->boot, log->begin_ns(), log->end_ns());
   auto sensors = read_logged_sensors(
       opened,
-      sensor_request(options, log->position_source, log->begin_ns(), log->end_ns()),
+      sensor_request(options, log->position_source, log->boot, log->begin_ns(), log->end_ns()),
       cancel);
   if (!sensors) return sensors.error();
   return with_records(
@@ -347,10 +349,10 @@ Result<std::unique_ptr<TruthSource>> fly_flight_log(const std::filesystem::path&
   const std::int64_t begin_ns = log->poses.front().t_ns;
   const std::int64_t end_ns = log->poses.back().t_ns;
   auto sensors = read_logged_sensors(
-      *opened, sensor_request(options, log->position_source, begin_ns, end_ns), cancel);
+      *opened, sensor_request(options, log->position_source, log->boot, begin_ns, end_ns), cancel);
   if (!sensors) return sensors.error();
   return with_records(std::move(flown),
-                      events_of(*opened, log->position_source, begin_ns, end_ns),
+                      events_of(*opened, log->position_source, log->boot, begin_ns, end_ns),
                       std::move(*sensors));
 }
 

@@ -8,7 +8,6 @@
 #include "core/cancel.hpp"
 #include "core/sensors/sensor_tracks.hpp"
 #include "core/time.hpp"
-#include "flight/replay/flight_events.hpp"
 
 namespace overfly::flight {
 namespace {
@@ -84,7 +83,6 @@ class SensorSink final : public logs::LogSink {
     for (const logs::StreamInfo& stream : log.streams) {
       if (stream.description.name == request.source) vehicle_ = stream.description.vehicle;
     }
-    boot_ = main_boot(log, vehicle_);
   }
 
   [[nodiscard]] bool stream(logs::StreamId id,
@@ -103,7 +101,7 @@ class SensorSink final : public logs::LogSink {
                int preference,
                const SensorSamples& samples) override {
     constexpr std::int64_t kMarginNs = 2 * kNsPerS;  // messages are slightly out of order
-    if (time.boot != boot_ || time.t_ns < request_.begin_ns - kMarginNs ||
+    if (time.boot != request_.boot || time.t_ns < request_.begin_ns - kMarginNs ||
         time.t_ns > request_.end_ns + kMarginNs) {
       return;
     }
@@ -132,7 +130,6 @@ class SensorSink final : public logs::LogSink {
   LoggedSensors& sensors_;
   const std::atomic<bool>* cancel_;
   std::string vehicle_;
-  std::uint32_t boot_ = 0;
   struct Stream {
     std::string name;
     logs::HeightDatum height = logs::HeightDatum::kMeanSeaLevel;

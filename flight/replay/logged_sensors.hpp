@@ -17,6 +17,7 @@ inline constexpr std::size_t kMaxLoggedSamples = 4'000'000;
 
 struct SensorRequest {
   std::string source;         ///< stream of the flight's positions: sensors of its vehicle are read
+  std::uint32_t boot = 0;     ///< the run of its clock that is flown, as LoggedTruth::boot
   std::int64_t begin_ns = 0;  ///< by the vehicle's clock: the flight's time 0
   std::int64_t end_ns = 0;
   double geoid_separation_m = 0.0;  ///< added to the GPS's heights above mean sea level

@@ -90,6 +90,7 @@ Result<SmoothedLog> smooth_log(const logs::OpenedLog& log,
                      std::move(*smoothed),
                      std::move(samples->position_source),
                      std::move(samples->attitude_source),
+                     samples->boot,
                      std::move(samples->warnings)};
 }
 

@@ -27,6 +27,7 @@ struct SmoothedLog {
   smoothing::SmoothedMotion smoothed;
   std::string position_source;
   std::string attitude_source;
+  std::uint32_t boot = 0;  ///< as LoggedTruth::boot
   std::vector<std::string> warnings;
 
   /// First and last time of the motion by the vehicle's clock [ns].

@@ -41,6 +41,7 @@ Result<logs::LogTrajectory> sampled_trajectory(const SmoothedLog& log, double ra
   trajectory.height = log.height;
   trajectory.position_source = log.position_source;
   trajectory.attitude_source = log.attitude_source;
+  trajectory.boot = log.boot;
   trajectory.poses.reserve(static_cast<std::size_t>(count));
   for (std::int64_t k = 0;; ++k) {
     const std::int64_t t_ns = log.begin_ns() + frame_time_ns(k, *rate);

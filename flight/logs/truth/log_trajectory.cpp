@@ -1,5 +1,7 @@
 #include "flight/logs/truth/log_trajectory.hpp"
 
+#include <utility>
+
 #include "flight/logs/truth/pose_joiner.hpp"
 
 namespace overfly::flight::logs {
@@ -11,7 +13,9 @@ Result<LogTrajectory> read_log_trajectory(const OpenedLog& log,
   Result<LoggedTruth> truth = read_truth_samples(log, request, joiner, cancel);
   if (!truth) return truth.error();
   LogTrajectory trajectory{std::move(*truth), {}, {}};
-  trajectory.poses = joiner.take_poses(trajectory.warnings);
+  PoseJoiner::JoinedPoses joined = joiner.take_poses(trajectory.warnings);
+  trajectory.boot = joined.boot;
+  trajectory.poses = std::move(joined.poses);
   if (trajectory.poses.empty()) {
     return Error{ErrorCode::kUnreadable,
                  log.file.string() + ": " + trajectory.position_source +

@@ -39,6 +39,8 @@ struct LoggedTruth {
   HeightDatum height = HeightDatum::kMeanSeaLevel;  ///< of georeferenced positions
   std::string position_source;
   std::string attitude_source;
+  /// The run of the vehicle's clock that the samples are of: as LogTime::boot.
+  std::uint32_t boot = 0;
   /// What was left out, with counts.
   std::vector<std::string> warnings;
 };

@@ -146,7 +146,7 @@ void PoseJoiner::add_pose(Run& run, const Position& position, const Eigen::Quate
   run.poses.push_back({position.t_ns, value, R});
 }
 
-std::vector<LogPose> PoseJoiner::take_poses(std::vector<std::string>& warnings) {
+PoseJoiner::JoinedPoses PoseJoiner::take_poses(std::vector<std::string>& warnings) {
   const auto most = std::max_element(runs_.begin(), runs_.end(), [](const auto& a, const auto& b) {
     return a.second.positions < b.second.positions;
   });
@@ -174,7 +174,7 @@ std::vector<LogPose> PoseJoiner::take_poses(std::vector<std::string>& warnings) 
     warnings.push_back("the origin of the local positions changes " +
                        std::to_string(origins_.size() - 1) + " times");
   }
-  return std::move(run.poses);
+  return {most->first, std::move(run.poses)};
 }
 
 }  // namespace overfly::flight::logs

@@ -31,9 +31,13 @@ class PoseJoiner final : public TruthSampleSink {
   void position(const LogTime& time, const Eigen::Vector3d& value) override;
   void attitude(const LogTime& time, const Eigen::Quaterniond& R_ned_body) override;
 
+  struct JoinedPoses {
+    std::uint32_t boot = 0;  ///< the run with the most positions
+    std::vector<LogPose> poses;
+  };
   /// The poses of the run with the most positions, and what was left out.
   /// @pre there was a position; nothing follows
-  [[nodiscard]] std::vector<LogPose> take_poses(std::vector<std::string>& warnings);
+  [[nodiscard]] JoinedPoses take_poses(std::vector<std::string>& warnings);
   /// The attitudes of the run with the most positions, times strictly increasing. Before the first
   /// pose and after the last one there is only the next one.
   /// @pre after take_poses(), which returned poses

@@ -269,7 +269,7 @@ TEST(FirstMode, OfAVehicleIsInForceFromItsFirstTime) {
     ASSERT_TRUE(event.time) << event.text;
     EXPECT_EQ(event.time->t_ns, 5 * kNsPerS);
   }
-  const auto events = events_of(*log, "1.1/GLOBAL_POSITION_INT", 5 * kNsPerS, 7 * kNsPerS);
+  const auto events = events_of(*log, "1.1/GLOBAL_POSITION_INT", 0, 5 * kNsPerS, 7 * kNsPerS);
   ASSERT_EQ(events.size(), 3U);
   EXPECT_EQ(events[0].text, "AUTO");
 }

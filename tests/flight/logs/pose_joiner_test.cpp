@@ -52,7 +52,7 @@ TEST(PoseJoiner, InterpolatesSamplesThatAreOutOfOrder) {
     }
   }
   std::vector<std::string> warnings;
-  const std::vector<LogPose> poses = joiner.take_poses(warnings);
+  const std::vector<LogPose> poses = joiner.take_poses(warnings).poses;
   EXPECT_THAT(warnings, ::testing::IsEmpty());
   ASSERT_EQ(poses.size(), 10'000U);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -74,7 +74,7 @@ TEST(PoseJoiner, ReportsWhatItLeavesOut) {
   joiner.position({0, 4 * kNsPerS + 1}, {4, 0, 0});  // after the last attitude
   joiner.position({1, kNsPerS}, {5, 0, 0});          // after a restart
   std::vector<std::string> warnings;
-  const std::vector<LogPose> poses = joiner.take_poses(warnings);
+  const std::vector<LogPose> poses = joiner.take_poses(warnings).poses;
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_EQ(poses[1].position.x(), 3.0);
   EXPECT_LT(rotation_angle_rad(poses[1].R_ned_body, turn_at(2 * kNsPerS)), 1e-6);
@@ -96,7 +96,8 @@ TEST(PoseJoiner, TakesTheRunWithTheMostPositions) {
     }
   }
   std::vector<std::string> warnings;
-  const std::vector<LogPose> poses = joiner.take_poses(warnings);
+  const auto [boot, poses] = joiner.take_poses(warnings);
+  EXPECT_EQ(boot, 1U);
   ASSERT_EQ(poses.size(), 6'000U);
   EXPECT_EQ(poses.back().position.x(), 1.0);
   EXPECT_LT(rotation_angle_rad(poses.back().R_ned_body, yaw_of(0.1)), 1e-6);
@@ -116,7 +117,7 @@ TEST(PoseJoiner, CountsPositionsBeforeTheFirstOriginFromIt) {
     joiner.position({0, i * kNsPerS / 50}, {0.0, 0.0, -10.0});
   }
   std::vector<std::string> warnings;
-  const std::vector<LogPose> poses = joiner.take_poses(warnings);
+  const std::vector<LogPose> poses = joiner.take_poses(warnings).poses;
   ASSERT_EQ(poses.size(), 20'000U);
   for (const std::size_t i : {0U, 10'000U, 14'999U, 15'000U, 17'999U}) {
     EXPECT_EQ(poses[i].position, Eigen::Vector3d(47.0, 8.0, 510.0)) << i;

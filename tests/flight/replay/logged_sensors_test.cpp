@@ -140,6 +140,48 @@ TEST_F(LoggedSensors, OfASliceAndOfAMovedFlight) {
                         "because the flight is moved: barometer, gps, magnetometer, range"));
 }
 
+/// Continues a log with another run of the clock from 0.1 s on: 60 positions, 60 samples of the IMU
+/// and a mode, which are fewer messages than those before, but more positions.
+std::string restarted(const std::string& before) {
+  Bytes bytes(before.begin(), before.end());
+  for (int i = 0; i < 60; ++i) {
+    const auto t_us = static_cast<std::uint64_t>(100'000 + 40'000 * i);
+    Bytes position = testing::record_header(2);
+    put(position, t_us);
+    put(position, 470000000 + 90 * i);
+    put(position, std::int32_t{80000000});
+    put(position, 500.0F);
+    for (const std::int16_t angle : {1000, 0, 0}) put(position, angle);
+    append(bytes, position);
+    Bytes imu = testing::record_header(11);
+    put(imu, t_us);
+    for (const float value : {0.0F, 0.0F, 0.0F, 0.0F, 0.0F, -7.0F}) put(imu, value);
+    append(bytes, imu);
+    if (i != 10) continue;
+    Bytes mode = testing::record_header(3);
+    put(mode, t_us);
+    for (const int value : {11, 11, 1}) mode.push_back(static_cast<std::uint8_t>(value));
+    append(bytes, mode);
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(LoggedSensors, AndModesAreOfTheRunOfTheClockWhosePositionsAreFlown) {
+  overfly::testing::write_text(file(), restarted(log_with_sensors()));
+  const FlownSensors flown = sensors_of(file());
+  ASSERT_TRUE(flown.flight);
+  const std::int64_t start_ns = flown.flight->log_start_ns().value();
+  EXPECT_LT(start_ns, kNsPerS);
+  EXPECT_GT(flown.samples.imu.size(), 50U);
+  for (const ImuSample& sample : flown.samples.imu) {
+    EXPECT_EQ(sample.acceleration_m_s2.z(), -7.0) << sample.t_ns;
+  }
+  EXPECT_TRUE(flown.samples.gps.empty());
+  const std::vector<FlightEvent> modes = flown.flight->take_events(100 * kNsPerS);
+  ASSERT_EQ(modes.size(), 1U);
+  EXPECT_EQ(modes[0].t_ns, 500'000'000 - start_ns);
+}
+
 /// A value of the samples of a list, interpolated linearly at a time; empty outside.
 template <typename Sample, typename Value>
 std::optional<Eigen::Vector3d> value_at(const std::vector<Sample>& list,
