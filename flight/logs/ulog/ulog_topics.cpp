@@ -37,7 +37,12 @@ bool find_topic_position(TopicPlan& plan,
   return true;
 }
 
-void find_topic_source(TopicPlan& plan, const UlogFormats& formats, const std::string& topic) {
+/// Flags of the topics that are the truth of a simulation are not used: PX4's bridge to Gazebo
+/// fills the values of these topics and leaves all flags 0.
+void find_topic_source(TopicPlan& plan,
+                       const UlogFormats& formats,
+                       const std::string& topic,
+                       SourceOrigin origin) {
   StreamDescription& description = plan.description;
   if (find_topic_position(
           plan, formats, topic, {"latitude_deg", "longitude_deg", "altitude_msl_m"})) {
@@ -47,10 +52,14 @@ void find_topic_source(TopicPlan& plan, const UlogFormats& formats, const std::s
     if (plan.position[0].type == "int32_t") plan.position_scale = {1e-7, 1e-7, 1e-3};
   } else if (find_topic_position(plan, formats, topic, {"x", "y", "z"})) {
     description.position = PositionKind::kLocal;
-    plan.valid = {formats.find(topic, "xy_valid"), formats.find(topic, "z_valid")};
     plan.origin = {formats.find(topic, "ref_lat"),
                    formats.find(topic, "ref_lon"),
                    formats.find(topic, "ref_alt")};
+  }
+  if (origin == SourceOrigin::kEstimate && description.position == PositionKind::kGeodetic) {
+    plan.valid = {formats.find(topic, "lat_lon_valid"), formats.find(topic, "alt_valid")};
+  } else if (origin == SourceOrigin::kEstimate && description.position == PositionKind::kLocal) {
+    plan.valid = {formats.find(topic, "xy_valid"), formats.find(topic, "z_valid")};
     plan.origin_valid = {formats.find(topic, "xy_global"), formats.find(topic, "z_global")};
   }
   plan.quaternion = formats.find(topic, "q");
@@ -82,7 +91,7 @@ TopicPlan plan_of(const UlogFormats& formats, const std::string& topic, std::uin
   }
   for (const TopicFacts& facts : kTopics) {
     if (facts.name != topic) continue;
-    find_topic_source(plan, formats, topic);
+    find_topic_source(plan, formats, topic, facts.origin);
     if (plan.description.position == PositionKind::kNone && !plan.description.attitude) break;
     plan.description.origin = facts.origin;
     plan.sampled = formats.find(topic, "timestamp_sample");

@@ -227,6 +227,59 @@ TEST(Ulog, TakesTheTimesOfSamples) {
   }
 }
 
+TEST(Ulog, LeavesOutEstimatesThatPx4MarksAsInvalid) {
+  Bytes bytes = definitions();
+  append(bytes,
+         ulog_text('F',
+                   "vehicle_global_position:uint64_t timestamp;double lat;double lon;float alt;"
+                   "bool lat_lon_valid;bool alt_valid;"));
+  append(bytes, ulog_subscription(0, 5, "vehicle_global_position"));
+  for (int i = 0; i < 20; ++i) {
+    const auto time_us = static_cast<std::uint64_t>(2'000'000 + 100'000 * i);
+    append(bytes, attitude_message(time_us, 0.0));
+    Bytes data;
+    put(data, time_us);
+    for (const double value : {47.0, 8.0}) put(data, value);
+    put(data, 500.0F);
+    data.push_back(i < 3 ? 0 : 1);
+    data.push_back(i < 5 ? 0 : 1);
+    append(bytes, ulog_data(5, data));
+  }
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_ulog(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_EQ(log->streams[4].positions, 15U);
+  EXPECT_EQ(log->streams[4].invalid, 5U);
+}
+
+TEST(Ulog, ReadsTheTruthOfASimulationWhoseFlagsAreNotSet) {
+  const char* const truth = "vehicle_local_position_groundtruth";
+  Bytes bytes = definitions();
+  append(bytes,
+         ulog_text('F',
+                   std::string(truth) +
+                       ":uint64_t timestamp;double ref_lat;double ref_lon;float x;float y;float z;"
+                       "float ref_alt;bool xy_valid;bool z_valid;bool xy_global;bool z_global;"));
+  append(bytes, ulog_subscription(0, 5, truth));
+  for (int i = 0; i < 20; ++i) {
+    const auto time_us = static_cast<std::uint64_t>(2'000'000 + 100'000 * i);
+    append(bytes, attitude_message(time_us, 0.0));
+    Bytes data;
+    put(data, time_us);
+    for (const double value : {47.0, 8.0}) put(data, value);
+    for (const float value : {1.0F * i, 10.0F, -100.0F, 400.0F}) put(data, value);
+    data.insert(data.end(), 4, 0);
+    append(bytes, ulog_data(5, data));
+  }
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_ulog(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_EQ(log->streams[4].positions, 20U);
+  EXPECT_TRUE(log->streams[4].georeferenced);
+  ASSERT_TRUE(log->truth);
+  EXPECT_EQ(log->truth->position, 4U);
+}
+
 TEST(Ulog, KeepsLocalPositionsWithoutAnOriginLocal) {
   Bytes bytes = definitions();
   for (int i = 0; i < 20; ++i) {
