@@ -22,4 +22,15 @@ Status check_other_output(const std::string& option,
       option + " " + out + ": is the file of " + other_option + " " + other + ": must be another"};
 }
 
+Status check_not_written(const std::string& option,
+                         const std::string& file,
+                         const std::string& folder,
+                         std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    const std::string written = (fs::path(folder) / name).string();
+    if (Status status = check_other_output("--out", written, option, file); !status) return status;
+  }
+  return {};
+}
+
 }  // namespace overfly::app

@@ -1,6 +1,7 @@
 // Files that a command is to write.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "core/result.hpp"
@@ -13,5 +14,14 @@ namespace overfly::app {
                                         const std::string& out,
                                         const std::string& other_option,
                                         const std::string& other);
+
+/// Checks that a file that is read is none of those that the command is to write into the folder of
+/// --out. Errors: kInvalidArgument naming both.
+/// @param option  of the file that is read
+/// @param names   of the files that are written
+[[nodiscard]] Status check_not_written(const std::string& option,
+                                       const std::string& file,
+                                       const std::string& folder,
+                                       std::initializer_list<const char*> names);
 
 }  // namespace overfly::app

@@ -82,22 +82,46 @@ bool is_of_sweep(const std::string& name) {
   return name.starts_with('.') || std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
-}  // namespace
-
-Status check_sweep_folder(const fs::path& folder) {
-  if (FileStamp::of(sweep_file(folder)).exists) return {};
+/// Checks that a folder has nothing but what a sweep makes.
+/// @param kind  what the folder is to become: "sweep"
+/// @param mark  the file that each folder of that kind has
+Status check_no_other_files(const fs::path& folder,
+                            const std::string& kind,
+                            const std::string& mark) {
   std::error_code failure;
   for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
        entry.increment(failure)) {
     const std::string name = entry->path().filename().string();
     if (is_of_sweep(name)) continue;
     return Error{ErrorCode::kConflict,
-                 folder.string() +
-                     ": is no folder of a sweep (sweep.json is missing), and not "
-                     "empty: it has " +
-                     name};
+                 folder.string() + ": is no folder of a " + kind + " (" + mark +
+                     " is missing), and not empty: it has " + name};
   }
   return {};
+}
+
+bool has_file(const fs::path& folder, const char* name) {
+  return FileStamp::of(folder / name).exists;
+}
+
+}  // namespace
+
+Status check_sweep_folder(const fs::path& folder) {
+  if (has_file(folder, "hunt.json")) {
+    return Error{ErrorCode::kConflict,
+                 folder.string() + ": is the folder of a hunt: it has hunt.json"};
+  }
+  if (has_file(folder, "sweep.json")) return {};
+  return check_no_other_files(folder, "sweep", "sweep.json");
+}
+
+Status check_hunt_folder(const fs::path& folder) {
+  if (has_file(folder, "hunt.json") || has_file(folder, "study.json")) return {};
+  if (has_file(folder, "sweep.json")) {
+    return Error{ErrorCode::kConflict,
+                 folder.string() + ": is the folder of a sweep: it has sweep.json"};
+  }
+  return check_no_other_files(folder, "hunt", "hunt.json");
 }
 
 Result<Json> sweep_entry(const fs::path& sweeps_folder, const std::string& name) {

@@ -11,8 +11,11 @@ namespace overfly::server::experiments {
 
 /// Checks that a folder can become, or is, that of a sweep: it has a sweep.json, or nothing but
 /// what a sweep makes before that, or it is empty or absent. Errors: kConflict naming a file that
-/// is of something else.
+/// is of something else, also of a hunt.
 [[nodiscard]] Status check_sweep_folder(const std::filesystem::path& folder);
+/// Checks that a folder can become, or is, that of a hunt: it has a hunt.json or the record of a
+/// study, or it is empty or absent. Errors: as above; kConflict for the folder of a sweep.
+[[nodiscard]] Status check_hunt_folder(const std::filesystem::path& folder);
 
 /// {"sweeps": [...]}, with an entry as of sweep_entry for each folder that has a sweep, those flown
 /// last first; at most 1000.

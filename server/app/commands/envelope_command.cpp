@@ -7,9 +7,11 @@
 #include <string>
 #include <thread>
 
+#include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/frame_cache_options.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
@@ -34,6 +36,11 @@ struct EnvelopeArguments {
 };
 
 int envelope(const EnvelopeArguments& arguments) {
+  if (Status status = check_not_written(
+          "sweep", arguments.file, arguments.out, {"sweep.json", "progress.json", "envelope.json"});
+      !status) {
+    return report(status.error());
+  }
   const Result<experiments::Sweep> sweep = experiments::load_sweep(arguments.file);
   if (!sweep) return report(sweep.error());
   if (Status status = experiments::check_sweep_folder(arguments.out); !status) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -14,10 +15,12 @@
 #include "server/app/exit_code.hpp"
 #include "server/app/file_limits.hpp"
 #include "server/app/frame_cache_options.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/experiments/hunt/hunt.hpp"
 #include "server/experiments/hunt/hunt_output.hpp"
+#include "server/experiments/sweep_folders.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/scenario/document/scenario_override.hpp"
 
@@ -141,9 +144,32 @@ Result<experiments::HuntResult> fly_from(const experiments::Hunt& hunt,
   return experiments::fly_hunt(hunt, options);
 }
 
+/// Makes the folder one of a hunt before anything is flown into it: a hunt that is stopped at any
+/// time can be continued.
+Status begin_folder(const experiments::Hunt& hunt, const fs::path& folder) {
+  if (Status status = experiments::check_hunt_folder(folder); !status) {
+    return status.error().in("--out");
+  }
+  std::error_code failure;
+  if (fs::exists(folder / "hunt.json", failure)) return {};
+  fs::create_directories(folder, failure);
+  if (failure) {
+    return Error{ErrorCode::kIo, folder.string() + ": cannot create: " + failure.message()};
+  }
+  return write_results(hunt, {}, folder);
+}
+
 int hunt(const HuntArguments& arguments) {
+  if (Status status = check_not_written("scenario",
+                                        arguments.file,
+                                        arguments.out,
+                                        {"hunt.json", "worst.json", "sweep.json", "progress.json"});
+      !status) {
+    return report(status.error());
+  }
   const Result<experiments::Hunt> hunt = hunt_from(arguments);
   if (!hunt) return report(hunt.error());
+  if (Status status = begin_folder(*hunt, arguments.out); !status) return report(status.error());
   const Result<experiments::HuntResult> result = fly_from(*hunt, arguments);
   if (!result) return report(result.error());
   const fs::path folder = arguments.out;

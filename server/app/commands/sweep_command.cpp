@@ -15,6 +15,7 @@
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
 #include "server/app/frame_cache_options.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/score_table.hpp"
 #include "server/app/stop_signal.hpp"
@@ -213,6 +214,11 @@ std::string misuse(const CLI::App& command, const SweepArguments& arguments) {
 }
 
 int sweep(const SweepArguments& arguments) {
+  if (Status status = check_not_written(
+          "sweep", arguments.file, arguments.out, {"sweep.json", "progress.json"});
+      !status) {
+    return report(status.error());
+  }
   const Result<experiments::Sweep> sweep = experiments::load_sweep(arguments.file);
   if (!sweep) return report(sweep.error());
   if (Status status = experiments::check_sweep_folder(arguments.out); !status) {

@@ -140,5 +140,22 @@ TEST_F(HuntCommand, NamesWhatIsInvalid) {
   EXPECT_FALSE(fs::exists(path("h4")));
 }
 
+TEST_F(HuntCommand, DoesNotReplaceWhatItReadsOrASweep) {
+  fs::create_directories(path("h5"));
+  const std::string document = R"({"format_version": 1, "scenario": "../small.json",
+    "axes": [{"path": "flight.course.airspeed_m_s", "values": [15, 20, 25]}]})";
+  write_text(path("h5/hunt.json"), document);
+  const Outcome itself = overfly_program({"hunt", path("h5/hunt.json"), "--out", path("h5")});
+  EXPECT_EQ(itself.exit_code, 2);
+  EXPECT_THAT(itself.err, HasSubstr("h5/hunt.json: is the file of scenario"));
+  EXPECT_EQ(read_text(path("h5/hunt.json")), document);
+  fs::create_directories(path("h6"));
+  write_text(path("h6/sweep.json"), "{}");
+  const Outcome sweep = overfly_program({"hunt", path("h5/hunt.json"), "--out", path("h6")});
+  EXPECT_EQ(sweep.exit_code, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("h6: is the folder of a sweep"));
+  EXPECT_EQ(read_text(path("h6/sweep.json")), "{}");
+}
+
 }  // namespace
 }  // namespace overfly::testing

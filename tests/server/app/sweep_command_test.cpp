@@ -278,6 +278,24 @@ TEST_F(SweepCommand, DoesNotMixItsFilesIntoARun) {
   EXPECT_FALSE(fs::exists(path("run/runs")));
 }
 
+TEST_F(SweepCommand, DoesNotReplaceTheFileThatItReads) {
+  fs::create_directories(path("own"));
+  fs::copy_file(file(), path("own/sweep.json"));
+  const std::string before = read_text(path("own/sweep.json"));
+  const Outcome sweep = overfly_program({"sweep", path("own/sweep.json"), "--out", path("own")});
+  EXPECT_EQ(sweep.exit_code, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("own/sweep.json: is the file of sweep"));
+  const Outcome envelope = overfly_program({"envelope",
+                                            path("own/sweep.json"),
+                                            "--out",
+                                            path("own"),
+                                            "--along",
+                                            "flight.course.airspeed_m_s"});
+  EXPECT_EQ(envelope.exit_code, 2);
+  EXPECT_EQ(read_text(path("own/sweep.json")), before);
+  EXPECT_FALSE(fs::exists(path("own/runs")));
+}
+
 TEST_F(SweepCommand, NamesOptionsThatDoNotFitTogether) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{"sweep", "--out", path("s8")}, "sweep: a sweep file is required"},

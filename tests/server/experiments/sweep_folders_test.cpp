@@ -88,6 +88,35 @@ TEST(SweepFolders, AFolderOfSomethingElseDoesNotBecomeASweep) {
   EXPECT_TRUE(check_sweep_folder(out).ok());
 }
 
+TEST(SweepFolders, AHuntAndASweepDoNotShareAFolder) {
+  const TemporaryFolder folder;
+  const fs::path sweep = folder.path() / "sweep";
+  const fs::path hunt = folder.path() / "hunt";
+  const fs::path study = folder.path() / "study";
+  EXPECT_TRUE(check_hunt_folder(hunt).ok()) << "absent";
+  for (const fs::path& each : {sweep, hunt, study}) fs::create_directories(each / "runs");
+  EXPECT_TRUE(check_hunt_folder(hunt).ok()) << "without other files";
+  write_text(sweep / "sweep.json", "{}");
+  write_text(hunt / "sweep.json", "{}");
+  write_text(hunt / "hunt.json", "{}");
+  write_text(study / "study.json", "{}");
+  EXPECT_TRUE(check_hunt_folder(hunt).ok());
+  EXPECT_TRUE(check_hunt_folder(study).ok());
+  const Status of_sweep = check_hunt_folder(sweep);
+  ASSERT_FALSE(of_sweep.ok());
+  EXPECT_EQ(of_sweep.error().code, ErrorCode::kConflict);
+  EXPECT_THAT(of_sweep.error().message, ::testing::HasSubstr("is the folder of a sweep"));
+  const Status of_hunt = check_sweep_folder(hunt);
+  ASSERT_FALSE(of_hunt.ok());
+  EXPECT_THAT(of_hunt.error().message, ::testing::HasSubstr("is the folder of a hunt"));
+  fs::remove(sweep / "sweep.json");
+  write_text(sweep / "manifest.json", "{}");
+  const Status of_run = check_hunt_folder(sweep);
+  ASSERT_FALSE(of_run.ok());
+  EXPECT_THAT(of_run.error().message,
+              ::testing::HasSubstr("is no folder of a hunt (hunt.json is missing), and not empty"));
+}
+
 TEST(SweepFolders, SurvivesDamagedFiles) {
   const TemporaryFolder folder;
   const fs::path sweep = folder.path() / "s";
