@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -14,6 +15,19 @@ namespace overfly::app {
                                         const std::string& out,
                                         const std::string& other_option,
                                         const std::string& other);
+
+/// A file and the option or argument that names it.
+struct NamedFile {
+  std::string option;
+  std::string file;
+};
+/// Checks each file that is to be written against the other ones and those that are read. Errors:
+/// as check_other_output.
+[[nodiscard]] Status check_outputs(const std::vector<NamedFile>& written,
+                                   const std::vector<NamedFile>& read);
+
+/// What a command reads of the folder of a sweep.
+[[nodiscard]] std::vector<NamedFile> files_of_sweep(const std::string& folder);
 
 /// Checks that a file that is read is none of those that the command is to write into the folder of
 /// --out. Errors: kInvalidArgument naming both.

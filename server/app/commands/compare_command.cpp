@@ -3,11 +3,13 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/text/number_text.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/score_table.hpp"
 #include "server/experiments/comparison/compare_sweeps.hpp"
 #include "server/files/whole_file.hpp"
@@ -67,6 +69,11 @@ int report_no_pairs(const CompareArguments& arguments) {
 }
 
 int compare(const CompareArguments& arguments) {
+  std::vector<NamedFile> read = files_of_sweep(arguments.sweep);
+  for (NamedFile& file : files_of_sweep(arguments.baseline)) read.push_back(std::move(file));
+  if (Status status = check_outputs({{"--junit", arguments.junit}}, read); !status) {
+    return report(status.error());
+  }
   const auto conditions = parsed_conditions(arguments.conditions);
   if (!conditions) return report(conditions.error());
   const auto mode = evaluation::alignment_mode_from(arguments.alignment).value();

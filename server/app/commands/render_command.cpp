@@ -11,6 +11,7 @@
 #include "server/app/commands/render_request.hpp"
 #include "server/app/commands/world/world_argument.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "terrain/raster/image_file.hpp"
 
 namespace overfly::app {
@@ -69,7 +70,8 @@ Status check(const RenderArguments& arguments) {
     return Error{ErrorCode::kInvalidArgument,
                  "--lat, --lon and --height-agl: must be given with --world"};
   }
-  return {};
+  return check_outputs({{"--out", arguments.out}, {"--depth", arguments.depth}},
+                       {{"--scenario", arguments.scenario}, {"--world", arguments.world}});
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {

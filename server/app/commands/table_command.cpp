@@ -8,6 +8,7 @@
 
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "server/experiments/tables/sweep_tables.hpp"
 #include "server/files/whole_file.hpp"
 
@@ -46,6 +47,11 @@ Result<experiments::TableOptions> table_options_from(const TableArguments& argum
 }
 
 int table(const TableArguments& arguments) {
+  std::vector<NamedFile> read = files_of_sweep(arguments.folder);
+  read.push_back({"--published", arguments.published});
+  if (Status status = check_outputs({{"--out", arguments.out}}, read); !status) {
+    return report(status.error());
+  }
   const Result<experiments::TableOptions> options = table_options_from(arguments);
   if (!options) return report(options.error());
   Result<experiments::SweepScores> scores = experiments::read_sweep_scores(arguments.folder);

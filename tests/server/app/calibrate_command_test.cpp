@@ -75,6 +75,22 @@ TEST(CalibrateCommand, ExplainsWhatItRefuses) {
   refused({"--board", "9x6", "--square-m", "0.03"}, "one of --images and --scenario");
   refused({"--images", images, "--board", "9x6", "--square-m", "0.03", "--export", "pdf=a"},
           "FORMAT=FILE");
+  const std::string scenario = lens_scenario(folder);
+  const std::string text = read_text(scenario);
+  refused({"--scenario", scenario, "--board", "9x6", "--square-m", "0.03", "--out", scenario},
+          "must be another");
+  refused({"--scenario",
+           scenario,
+           "--board",
+           "9x6",
+           "--square-m",
+           "0.03",
+           "--export",
+           "dso=" + (folder.path() / "a").string(),
+           "--export",
+           "svo=" + (folder.path() / "." / "a").string()},
+          "must be another");
+  EXPECT_EQ(read_text(scenario), text);
   refused({"--images", images, "--board", "9x6", "--square-m", "0.03", "--k3", "--model", "none"},
           "--k3");
 }

@@ -318,5 +318,18 @@ TEST_F(RenderCommand, NamesAFrameBeyondTheFlightAndAFileThatCannotBeWritten) {
   EXPECT_THAT(nowhere.err, HasSubstr("no/where.png: cannot be written"));
 }
 
+TEST_F(RenderCommand, WritesItsFilesOverNoOther) {
+  const Outcome twice = over_flat_ground(
+      {"--height-agl", "100", "--out", path("same.tif"), "--depth", path("same.tif")});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("must be another"));
+  EXPECT_FALSE(fs::exists(path("same.tif")));
+  const std::string before = read_text(scenario_file());
+  const Outcome scenario =
+      overfly_program({"render", "--scenario", scenario_file(), "--out", scenario_file()});
+  EXPECT_EQ(scenario.exit_code, 2);
+  EXPECT_EQ(read_text(scenario_file()), before);
+}
+
 }  // namespace
 }  // namespace overfly::testing

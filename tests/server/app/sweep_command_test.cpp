@@ -296,6 +296,27 @@ TEST_F(SweepCommand, DoesNotReplaceTheFileThatItReads) {
   EXPECT_FALSE(fs::exists(path("own/runs")));
 }
 
+TEST_F(SweepCommand, TablesAndComparisonsDoNotReplaceWhatTheyRead) {
+  fs::create_directories(path("read"));
+  for (const char* name : {"read/sweep.json", "read/results.jsonl", "read/published.json"}) {
+    write_text(path(name), "{}");
+    const Outcome table = overfly_program(
+        {"table", path("read"), "--published", path("read/published.json"), "--out", path(name)});
+    EXPECT_EQ(table.exit_code, 2) << name;
+    EXPECT_THAT(table.err, HasSubstr("must be another")) << name;
+    EXPECT_EQ(read_text(path(name)), "{}");
+  }
+  const Outcome compare = overfly_program({"compare",
+                                           path("absent"),
+                                           path("read"),
+                                           "--fail-if",
+                                           "success_rate < 1",
+                                           "--junit",
+                                           path("read/results.jsonl")});
+  EXPECT_EQ(compare.exit_code, 2);
+  EXPECT_THAT(compare.err, HasSubstr("must be another"));
+}
+
 TEST_F(SweepCommand, NamesOptionsThatDoNotFitTogether) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{"sweep", "--out", path("s8")}, "sweep: a sweep file is required"},

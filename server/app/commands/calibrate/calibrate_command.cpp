@@ -8,6 +8,7 @@
 #include "server/app/commands/calibrate/calibration_summary.hpp"
 #include "server/app/commands/commands.hpp"
 #include "server/app/exit_code.hpp"
+#include "server/app/output_files.hpp"
 #include "server/app/progress.hpp"
 #include "server/app/stop_signal.hpp"
 #include "server/calibration/calibrate_images.hpp"
@@ -138,12 +139,20 @@ Status write_files(const CalibrateArguments& arguments,
   return {};
 }
 
+Status check_files(const CalibrateArguments& arguments,
+                   const std::vector<ExportRequest>& requests) {
+  std::vector<NamedFile> written{{"--out", arguments.out}};
+  for (const ExportRequest& request : requests) written.push_back({"--export", request.file});
+  return check_outputs(written, {{"--scenario", arguments.scenario}});
+}
+
 int calibrate(const CalibrateArguments& arguments) {
   if (arguments.images.empty() == arguments.scenario.empty()) {
     return report({ErrorCode::kInvalidArgument, "one of --images and --scenario must be given"});
   }
   const auto requests = exports_from(arguments.exports);
   if (!requests) return report(requests.error());
+  if (Status status = check_files(arguments, *requests); !status) return report(status.error());
   const auto options = options_from(arguments);
   if (!options) return report(options.error());
   const auto record = calibrate_shown(arguments, *options);

@@ -5,13 +5,11 @@
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include "core/motion/trajectory_io.hpp"
 #include "server/app/commands/commands.hpp"
@@ -61,21 +59,12 @@ Status check_output_file(const std::string& file) {
 }
 
 /// Checked before the estimator runs, so that no result is lost because its file cannot be written.
-Status check_outputs(const TrackArguments& arguments) {
-  using Option = std::pair<const char*, const std::string*>;
-  const Option files[] = {{"--out", &arguments.out},
-                          {"--statuses", &arguments.statuses},
-                          {"--points", &arguments.points},
-                          {"--truth", &arguments.truth},
-                          {"--times", &arguments.times}};
-  constexpr std::size_t kWritten = 3;
-  for (std::size_t i = 0; i < kWritten; ++i) {
-    for (std::size_t j = i + 1; j < std::size(files); ++j) {
-      Status status =
-          check_other_output(files[i].first, *files[i].second, files[j].first, *files[j].second);
-      if (!status) return status;
-    }
-  }
+Status prepare_outputs(const TrackArguments& arguments) {
+  Status others = check_outputs({{"--out", arguments.out},
+                                 {"--statuses", arguments.statuses},
+                                 {"--points", arguments.points}},
+                                {{"--truth", arguments.truth}, {"--times", arguments.times}});
+  if (!others) return others;
   for (const std::string& file : {arguments.out, arguments.statuses, arguments.points}) {
     if (file.empty()) continue;
     if (Status status = check_output_file(file); !status) return status;
@@ -188,7 +177,7 @@ int track(const TrackArguments& arguments) {
   const std::atomic<bool>& stop = catch_stop_signals();
   const Result<server::DatasetOptions> options = dataset_options_from(arguments);
   if (!options) return report(options.error());
-  if (Status status = check_outputs(arguments); !status) return report(status.error());
+  if (Status status = prepare_outputs(arguments); !status) return report(status.error());
   Result<server::Dataset> dataset = server::open_dataset(*options);
   if (!dataset) return report(dataset.error());
   const Result<std::optional<Truth>> truth = read_truth(arguments, *dataset);
