@@ -44,16 +44,22 @@ std::uint32_t big_endian(const unsigned char* bytes) {
 }
 
 /// Checks the size that the header states before anything of that size is allocated.
-Status check_png_size(const fs::path& file, const std::array<unsigned char, 25>& head) {
+Status check_png_size(const fs::path& file,
+                      const std::array<unsigned char, 25>& head,
+                      std::int64_t most_pixels) {
   const std::uint32_t width = big_endian(&head[16]);
   const std::uint32_t height = big_endian(&head[20]);
-  if (width <= kMostImageSidePx && height <= kMostImageSidePx) return {};
-  return unreadable(file,
-                    std::to_string(width) + " x " + std::to_string(height) +
-                        " px: must be at most " + std::to_string(kMostImageSidePx) + " a side");
+  if (width > kMostImageSidePx || height > kMostImageSidePx) {
+    return unreadable(file,
+                      std::to_string(width) + " x " + std::to_string(height) +
+                          " px: must be at most " + std::to_string(kMostImageSidePx) + " a side");
+  }
+  const Status pixels = check_image_pixels(width, height, most_pixels);
+  if (!pixels) return pixels.error().in(file.string());
+  return {};
 }
 
-Result<Kind> kind_of(const fs::path& file) {
+Result<Kind> kind_of(const fs::path& file, std::int64_t most_pixels) {
   if (Status status = check_regular_file(file); !status) return status.error();
   std::ifstream in(file, std::ios::binary);
   if (!in) return Error{ErrorCode::kIo, file.string() + ": cannot be opened for reading"};
@@ -64,17 +70,17 @@ Result<Kind> kind_of(const fs::path& file) {
   std::copy(bytes.begin(), bytes.end(), head.begin());
   const Kind kind = kind_of(head);
   if (kind == Kind::kPng8 || kind == Kind::kPng16) {
-    if (Status status = check_png_size(file, head); !status) return status.error();
+    if (Status status = check_png_size(file, head, most_pixels); !status) return status.error();
   }
   return kind;
 }
 
-Result<Image> read_jpeg(const fs::path& file) {
+Result<Image> read_jpeg(const fs::path& file, std::int64_t most_pixels) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
   const auto bytes = read_file_bytes(file, kMaxBytes);
   if (!bytes) return bytes.error();
-  Result<Image> image = decode_jpeg(*bytes);
-  if (!image) return unreadable(file, image.error().message);
+  Result<Image> image = decode_jpeg(*bytes, most_pixels);
+  if (!image) return image.error().in(file.string());
   return image;
 }
 
@@ -96,10 +102,10 @@ Result<Image> read_deep(const fs::path& file, int sample_bits) {
   return image;
 }
 
-Result<Image> read_any(const fs::path& file, Kind kind, int sample_bits) {
+Result<Image> read_any(const fs::path& file, Kind kind, int sample_bits, std::int64_t most_pixels) {
   switch (kind) {
     case Kind::kJpeg:
-      return read_jpeg(file);
+      return read_jpeg(file, most_pixels);
     case Kind::kPng16:
       return read_deep(file, sample_bits);
     case Kind::kPng8:
@@ -113,11 +119,13 @@ Result<Image> read_any(const fs::path& file, Kind kind, int sample_bits) {
 
 }  // namespace
 
-Result<Image> read_grey_image(const fs::path& file, int sample_bits) {
-  const Result<Kind> kind = kind_of(file);
+Result<Image> read_grey_image(const fs::path& file, int sample_bits, std::int64_t most_pixels) {
+  const Result<Kind> kind = kind_of(file, most_pixels);
   if (!kind) return kind.error();
-  const Result<Image> image = read_any(file, *kind, sample_bits);
+  const Result<Image> image = read_any(file, *kind, sample_bits, most_pixels);
   if (!image) return image.error();
+  const Status pixels = check_image_pixels(image->width_px, image->height_px, most_pixels);
+  if (!pixels) return pixels.error().in(file.string());
   return grey_of(*image);
 }
 

@@ -56,7 +56,14 @@ Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
   return std::vector<std::uint8_t>(bytes, bytes + size);
 }
 
-Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes) {
+Status check_image_pixels(std::int64_t width_px, std::int64_t height_px, std::int64_t most_pixels) {
+  if (width_px * height_px <= most_pixels) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               std::to_string(width_px) + " x " + std::to_string(height_px) +
+                   " px: must have at most " + std::to_string(most_pixels) + " pixels"};
+}
+
+Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes, std::int64_t most_pixels) {
   thread_local const Handle handle{tjInitDecompress()};
   if (!handle) return Error{ErrorCode::kInternal, "JPEG decoder: out of memory"};
   int width = 0;
@@ -74,6 +81,9 @@ Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes) {
     return Error{ErrorCode::kUnreadable,
                  "JPEG image of " + std::to_string(width) + " x " + std::to_string(height) +
                      " px: must be at most " + std::to_string(kMost) + " a side"};
+  }
+  if (Status status = check_image_pixels(width, height, most_pixels); !status) {
+    return status.error();
   }
   const bool grey = colour_space == TJCS_GRAY;
   Image image(width, height, grey ? 1 : 3);

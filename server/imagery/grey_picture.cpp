@@ -126,7 +126,7 @@ Image grey_from(const LoggedPicture& picture, const BayerLayout& layout) {
 }
 
 /// PNG is read from files: this one is removed at once.
-Result<Image> image_in_file(std::span<const std::uint8_t> bytes) {
+Result<Image> image_in_file(std::span<const std::uint8_t> bytes, std::int64_t most_pixels) {
   std::error_code failed;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
   std::string name = (failed ? "/tmp" : folder.string()) + "/overfly-image-XXXXXX";
@@ -142,13 +142,13 @@ Result<Image> image_in_file(std::span<const std::uint8_t> bytes) {
     if (step <= 0) return Error{ErrorCode::kIo, name + ": cannot be written"};
     written += static_cast<std::size_t>(step);
   }
-  return read_grey_image(name);
+  return read_grey_image(name, 16, most_pixels);
 }
 
-Result<Image> decoded(std::span<const std::uint8_t> bytes) {
+Result<Image> decoded(std::span<const std::uint8_t> bytes, std::int64_t most_pixels) {
   const bool jpeg = bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8;
-  if (!jpeg) return image_in_file(bytes);
-  Result<Image> image = decode_jpeg(bytes);
+  if (!jpeg) return image_in_file(bytes, most_pixels);
+  Result<Image> image = decode_jpeg(bytes, most_pixels);
   if (!image) return image;
   return grey_of(*image);
 }
@@ -163,8 +163,8 @@ const Layout* layout_named(const Layout (&layouts)[N], std::string_view encoding
 
 }  // namespace
 
-Result<Image> grey_picture(const LoggedPicture& picture) {
-  if (picture.encoding == "compressed") return decoded(picture.data);
+Result<Image> grey_picture(const LoggedPicture& picture, std::int64_t most_pixels) {
+  if (picture.encoding == "compressed") return decoded(picture.data, most_pixels);
   const auto width = static_cast<std::size_t>(picture.width_px);
   const auto fits = [&](int bytes) {
     return picture.row_bytes / static_cast<std::size_t>(bytes) >= width;

@@ -25,14 +25,6 @@ constexpr milliseconds kTurn{100};
 
 Error conflict(const std::string& what) { return {ErrorCode::kConflict, what}; }
 
-Status check_size(const Image& image) {
-  const std::int64_t pixels = std::int64_t{image.width_px} * image.height_px;
-  if (pixels <= kMostBoardImagePixels) return {};
-  return Error{ErrorCode::kInvalidArgument,
-               std::to_string(image.width_px) + " x " + std::to_string(image.height_px) +
-                   " px: must have at most " + std::to_string(kMostBoardImagePixels) + " pixels"};
-}
-
 JpegBytes preview_of(const Image& image) {
   const auto small = halved_to_fit(std::make_shared<const Image>(image), kPreviewWidthPx);
   auto jpeg = encode_jpeg(*small, kPreviewQuality);
@@ -262,7 +254,9 @@ void CalibrationSession::search(const BoardImage& image) {
     show(image, image.image.error().message);
     return;
   }
-  if (const Status size = check_size(*image.image); !size) {
+  const Status size =
+      check_image_pixels(image.image->width_px, image.image->height_px, kMostBoardImagePixels);
+  if (!size) {
     show({image.name, size.error()}, size.error().message);
     return;
   }

@@ -29,6 +29,9 @@ Error error_for_client(const Error& error) {
   if (error.code == ErrorCode::kIo) {
     return {error.code, "the server cannot read or store the image: is its disk full?"};
   }
+  if (error.code == ErrorCode::kInvalidArgument) {
+    return {error.code, "must have at most " + std::to_string(kMostBoardImagePixels) + " pixels"};
+  }
   return {ErrorCode::kUnreadable, "cannot be read as PNG, JPEG, PGM or PPM"};
 }
 
@@ -39,7 +42,7 @@ class FolderBoards final : public BoardImages {
   [[nodiscard]] Next next(std::chrono::milliseconds /*patience*/) override {
     const fs::path& file = files_[next_++];
     const std::string name = file.filename().string();
-    Result<Image> image = read_grey_image(file);
+    Result<Image> image = read_grey_image(file, 16, kMostBoardImagePixels);
     if (!image) image = error_for_client(image.error());
     return board_image(name, std::move(image));
   }
@@ -178,7 +181,7 @@ Next UploadedImages::next(std::chrono::milliseconds patience) {
   flight::logs::LoggedPicture picture;
   picture.encoding = "compressed";
   picture.data = file.bytes;
-  Result<Image> image = grey_picture(picture);
+  Result<Image> image = grey_picture(picture, kMostBoardImagePixels);
   if (!image) image = error_for_client(image.error());
   return board_image(std::move(file.name), std::move(image));
 }

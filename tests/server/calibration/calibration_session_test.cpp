@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <thread>
 
 #include "server/calibration/calibrate_images.hpp"
@@ -284,6 +286,24 @@ TEST(CalibrationSession, RefusesImagesThatAreTooLarge) {
   const SessionState state =
       wait_for(*session, [](const SessionState& now) { return !now.source_open; });
   EXPECT_THAT(state.left_out_images.at(0).reason, HasSubstr("at most 40000000 pixels"));
+}
+
+TEST(CalibrationSession, RefusesUploadsThatAreTooLargeBeforeTheyAreDecoded) {
+  const auto session = CalibrationSession::begin(request_for({})).value();
+  std::vector<std::uint8_t> jpeg = encode_jpeg(Image(160, 120, 1, 90), 75).value();
+  // The size in the header of the frame (marker FFC0): 16000 x 16000 px, of which nothing follows.
+  const std::array<std::uint8_t, 2> marker{0xFF, 0xC0};
+  const auto header = std::search(jpeg.begin(), jpeg.end(), marker.begin(), marker.end());
+  ASSERT_LT(header + 8, jpeg.end());
+  for (const int i : {5, 7}) {
+    header[i] = 16000 / 256;
+    header[i + 1] = 16000 % 256;
+  }
+  ASSERT_TRUE(session->upload("photo.jpg", jpeg).value());
+  session->finish();
+  const SessionState state =
+      wait_for(*session, [](const SessionState& now) { return !now.source_open; });
+  EXPECT_EQ(state.left_out_images.at(0).reason, "must have at most 40000000 pixels");
 }
 
 TEST(CalibrationSession, EndsSoonWhenItIsCancelled) {

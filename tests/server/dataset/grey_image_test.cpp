@@ -139,6 +139,19 @@ TEST_F(GreyImage, RefusesDeclaredSizesThatTheFileDoesNotHold) {
   EXPECT_THAT(error("tiny.ppm"), HasSubstr("must be at least 805306368 for 16384 x 16384 px"));
 }
 
+TEST_F(GreyImage, RefusesMorePixelsThanAreWanted) {
+  const cv::Mat grey(120, 160, CV_8UC1, cv::Scalar(90));
+  for (const char* name : {"a.png", "a.jpg", "a.pgm"}) {
+    ASSERT_TRUE(cv::imwrite(file(name).string(), grey));
+    EXPECT_TRUE(read_grey_image(file(name), 16, 19'200).ok()) << name;
+    const Result<Image> refused = read_grey_image(file(name), 16, 19'199);
+    ASSERT_FALSE(refused.ok()) << name;
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(refused.error().message,
+                HasSubstr(std::string(name) + ": 160 x 120 px: must have at most 19199 pixels"));
+  }
+}
+
 TEST(ImageName, IsToldByItsEnding) {
   for (const char* name : {"a.png", "a.JPG", "b/a.jpeg", "a.pgm", "a.ppm"}) {
     EXPECT_TRUE(is_image_name(name)) << name;
