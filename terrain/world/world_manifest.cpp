@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -105,6 +107,15 @@ struct Reader {
     return (folder / file).lexically_normal();
   }
 
+  /// Samples are compared as 32-bit floats. Their largest value is written with few digits as
+  /// 3.4028235e+38, which is beyond it.
+  static std::optional<double> nodata(Fields& in) {
+    constexpr double kWritten = 3.4028235e38;
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    const std::optional<double> value = in.number("nodata", -kWritten, kWritten);
+    return value ? std::optional(std::clamp(*value, -kLargest, kLargest)) : std::nullopt;
+  }
+
   std::optional<std::array<double, 2>> range(Fields& in) {
     const Json* value = in.find("range");
     if (value == nullptr) return std::nullopt;
@@ -125,7 +136,7 @@ struct Reader {
     layer.file = file_of(in);
     layer.attribution = in.text("attribution").value_or("");
     layer.crs = in.text("crs");
-    layer.nodata = in.number("nodata", -1e38, 1e38);
+    layer.nodata = nodata(in);
     layer.range = range(in);
     in.reject_unknown();
     return layer;
@@ -154,7 +165,7 @@ struct Reader {
     layer.unit_m = in.number("unit_m", 1e-4, 1e4);
     layer.attribution = in.text("attribution").value_or("");
     layer.crs = in.text("crs");
-    layer.nodata = in.number("nodata", -1e38, 1e38);
+    layer.nodata = nodata(in);
     in.reject_unknown();
     return layer;
   }

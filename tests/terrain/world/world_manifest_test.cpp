@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/motion/pose.hpp"
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
@@ -97,6 +99,23 @@ TEST(WorldManifest, ErrorsNameFieldValueAndLimit) {
       EXPECT_NE(error.find(part), std::string::npos) << part << " in: " << error;
     }
   }
+}
+
+TEST(WorldManifest, NodataMayBeTheLargestFloat) {
+  TemporaryFolder folder;
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (const std::string text : {"-3.4028235e38", "-3.40282347e+38", "-3.4028234663852886e+38"}) {
+    testing::write_text(folder.path() / "world.json",
+                        R"({"format_version": 1, "imagery": [{"file": "a.tif", "nodata": )" + text +
+                            R"(}], "elevation": [{"file": "b.tif", "nodata": )" + text + "}]}");
+    const auto spec = read_world_manifest(folder.path() / "world.json");
+    ASSERT_TRUE(spec) << spec.error().message;
+    EXPECT_EQ(spec->imagery[0].nodata, -kLargest) << text;
+    EXPECT_EQ(spec->elevation[0].nodata, -kLargest) << text;
+  }
+  EXPECT_NE(error_of(R"({"format_version": 1, "imagery": [{"file": "a.tif", "nodata": 1e39}]})")
+                .find("imagery.0.nodata = 1e+39"),
+            std::string::npos);
 }
 
 TEST(WorldManifest, OfAMissingFileIsNotFound) {
