@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace overfly::flight::logs {
 namespace {
 
-constexpr std::size_t kMaxRuns = 8;
+constexpr std::size_t kMaxRuns = 8;  ///< that are held
 constexpr std::int64_t kSpeedIntervalNs = kNsPerS / 5;
 constexpr double kStepM = 20.0;
 constexpr double kStepSpeedMS = 150.0;
@@ -104,8 +105,15 @@ class SeriesSink final : public LogSink {
     if (!log_.slice.contains(time.t_ns)) return nullptr;
     const auto found = runs_.find(time.boot);
     if (found != runs_.end()) return &found->second;
-    if (runs_.size() >= kMaxRuns) return nullptr;
+    if (runs_.size() >= kMaxRuns) drop_smallest_run();
     return &runs_.try_emplace(time.boot, max_intervals_).first->second;
+  }
+  /// The latest of those with the fewest positions. Runs follow one another: none of them grows.
+  void drop_smallest_run() {
+    const auto least = std::min_element(runs_.rbegin(), runs_.rend(), [](auto& a, auto& b) {
+      return a.second.positions.count() < b.second.positions.count();
+    });
+    runs_.erase(std::next(least).base());
   }
   void take_position(StreamId id, const LogTime& time, const Eigen::Vector3d& value) override {
     if (id != truth_.position) return;
@@ -142,7 +150,7 @@ class SeriesSink final : public LogSink {
   std::size_t max_intervals_;
   const std::atomic<bool>* cancel_;
   std::optional<LocalOrigin> origin_;
-  std::map<std::uint32_t, RunOfClock> runs_;  ///< by boot
+  std::map<std::uint32_t, RunOfClock> runs_;  ///< by boot; those with the most positions
 };
 
 }  // namespace

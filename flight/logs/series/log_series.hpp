@@ -44,7 +44,7 @@ struct LogSeries {
 inline constexpr std::size_t kMaxLogSteps = 200;
 
 /// Reads a log's slice once more. Of a clock that starts again, the run with the most positions is
-/// taken; of more than 8 runs, the first 8.
+/// taken.
 /// Memory: independent of the size of the log.
 /// Errors: as choose_truth and read_log_into; kUnreadable if there are no valid positions.
 [[nodiscard]] Result<LogSeries> read_log_series(const OpenedLog& log,

@@ -119,6 +119,35 @@ TEST(LogSeries, CountsPositionsBeforeTheFirstOriginFromIt) {
   }
 }
 
+TEST(LogSeries, TakesTheRunWithTheMostPositionsOfMany) {
+  testing::Bytes bytes;
+  std::uint8_t sequence = 0;
+  const auto add = [&](std::uint32_t id, const testing::Bytes& payload) {
+    testing::append(
+        bytes,
+        testing::tlog_record(1'700'000'000'000'000, testing::frame_bytes(id, payload, sequence++)));
+  };
+  for (int run = 0; run < 14; ++run) {
+    const std::uint32_t count = run == 9 ? 80 : 40;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t boot_ms = 1000 + 100 * i;
+      add(30, testing::attitude_payload(boot_ms, 0.0F, 0.0F, 0.0F));
+      add(33, testing::global_position_payload(boot_ms, 470000000 + run, 80000000, 500000));
+    }
+  }
+  const overfly::testing::TemporaryFolder folder;
+  testing::write_bytes(folder.path() / "log", bytes);
+  const Result<OpenedLog> log = open_log(folder.path() / "log");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const Result<LogTrajectory> flown = read_log_trajectory(*log, {});
+  ASSERT_TRUE(flown.ok()) << flown.error().message;
+  const Result<LogSeries> series = read_log_series(*log, {"", 1000});
+  ASSERT_TRUE(series.ok()) << series.error().message;
+  EXPECT_EQ(flown->boot, 9U);
+  EXPECT_EQ(series->run, 9U);
+  EXPECT_GT(series->position_count, 70U);
+}
+
 TEST(LogSeries, ReadsASliceOfASource) {
   OVERFLY_DATA_OR_SKIP(file, "sitl/plane25.BIN");
   LogSlice slice;
