@@ -1,5 +1,6 @@
 #include "server/files/data_files.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -81,6 +82,31 @@ bool is_clean(std::string_view name) {
   return true;
 }
 
+/// Whether clients may read a file of a folder.
+bool is_served(const ServedFolders& folders,
+               const fs::path& file,
+               const std::function<bool(const std::string& name)>& candidate) {
+  return candidate(file.filename().string()) && !is_hidden(file) && is_clean(file.string()) &&
+         folders.sources.check(file, "file").ok();
+}
+
+/// The folder of a name. Empty if it is none, hidden, behind a link or outside.
+std::optional<fs::path> find_folder(const ServedFolders& folders, const std::string& name) {
+  const std::size_t slash = std::min(name.find('/'), name.size());
+  for (const auto& [label, folder] : labelled(folders)) {
+    if (label != name.substr(0, slash)) continue;
+    fs::path path = folder;
+    std::error_code ignored;
+    for (const fs::path& part : fs::path(name.substr(std::min(slash + 1, name.size())))) {
+      if (part.empty() || part.is_absolute() || is_hidden(part)) return std::nullopt;
+      path /= part;
+      if (fs::is_symlink(path, ignored)) return std::nullopt;
+    }
+    return fs::is_directory(path, ignored) ? std::optional(path) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool visit_data_files(const ServedFolders& folders,
@@ -101,10 +127,7 @@ bool visit_data_files(const ServedFolders& folders,
         if (is_hidden(file) || entry.depth() >= kMaxDataDepth) entry.disable_recursion_pending();
         continue;
       }
-      if (!candidate(file.filename().string()) || is_hidden(file) || !is_clean(file.string())) {
-        continue;
-      }
-      if (!folders.sources.check(file, "file")) continue;
+      if (!is_served(folders, file, candidate)) continue;
       // Data folders may lie in each other.
       if (!listed.insert(fs::weakly_canonical(file, ignored)).second) continue;
       const bool more = take({label + "/" + file.lexically_relative(folder).generic_string(),
@@ -114,6 +137,23 @@ bool visit_data_files(const ServedFolders& folders,
     }
   }
   return true;
+}
+
+void visit_data_folder(const ServedFolders& folders,
+                       const std::string& name,
+                       const std::function<bool(const std::string& name)>& candidate,
+                       const std::function<bool(const DataFile&)>& take) {
+  const std::optional<fs::path> folder = find_folder(folders, name);
+  if (!folder) return;
+  const bool uploaded = name.substr(0, name.find('/')) == kUploadsLabel;
+  std::error_code failed;
+  fs::directory_iterator entry(*folder, fs::directory_options::skip_permission_denied, failed);
+  for (const fs::directory_iterator end; !failed && entry != end; entry.increment(failed)) {
+    const fs::path& file = entry->path();
+    std::error_code ignored;
+    if (entry->is_directory(ignored) || !is_served(folders, file, candidate)) continue;
+    if (!take({name + "/" + file.filename().string(), file, uploaded})) return;
+  }
 }
 
 std::optional<fs::path> find_data_file(

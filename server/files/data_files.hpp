@@ -40,6 +40,15 @@ bool visit_data_files(const ServedFolders& folders,
                       const std::function<bool(const std::string& name)>& candidate,
                       const std::function<bool(const DataFile&)>& take);
 
+/// Passes the files of one folder, but not of those in it, to `take`, until that returns false.
+/// What is left out is as above, without the limit of entries.
+/// @param name  of the folder, as in the names of its files: "data/photos". There are no files for
+/// every name that is not the one of a folder inside the folders
+void visit_data_folder(const ServedFolders& folders,
+                       const std::string& name,
+                       const std::function<bool(const std::string& name)>& candidate,
+                       const std::function<bool(const DataFile&)>& take);
+
 /// The file of a name. Empty for every name that is not the one of a regular file inside the
 /// folders, whether the file exists or not.
 [[nodiscard]] std::optional<std::filesystem::path> find_data_file(

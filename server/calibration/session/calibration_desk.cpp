@@ -83,11 +83,17 @@ Json CalibrationDesk::sources_json() const {
 
 Result<OpenBoardImages> CalibrationDesk::folder_source(const std::string& name) const {
   std::vector<fs::path> files;
-  (void)visit_data_files(options_.folders(), is_image_file, [&](const DataFile& file) {
-    if (folder_of(file.name) == name) files.push_back(file.path);
-    return files.size() < kMostCalibrationImages;
+  visit_data_folder(options_.folders(), name, is_image_file, [&](const DataFile& file) {
+    files.push_back(file.path);
+    return files.size() <= kMostCalibrationImages;
   });
   if (files.empty()) return no_source("folder", name);
+  if (files.size() > kMostCalibrationImages) {
+    const std::string most = std::to_string(kMostCalibrationImages);
+    return Error{ErrorCode::kInvalidArgument,
+                 name + ": contains more than " + most +
+                     " images (PNG, JPEG, PGM, PPM): must be 1 to " + most};
+  }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return before_naturally(a.filename().string(), b.filename().string());
   });

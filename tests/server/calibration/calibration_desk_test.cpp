@@ -94,6 +94,23 @@ TEST_F(CalibrationDeskTest, CalibratesFromAFolderInTheOrderOfItsNumbers) {
   EXPECT_EQ(state.views[2]->name, "p10.png");
 }
 
+TEST_F(CalibrationDeskTest, TakesAllImagesOfAFolderOrNone) {
+  fs::create_directories(data() / "many");
+  for (int i = 0; i <= 20'000; ++i) {
+    std::ofstream(data() / "many" / (std::to_string(i) + ".png"));
+  }
+  CalibrationDesk desk(options());
+  const auto refused = desk.begin(request(SourceKind::kFolder, "data/many"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("data/many: contains more than 20000 images (PNG, JPEG, PGM, PPM)"));
+  // Another folder does not suffer from its number of files.
+  const auto id = desk.begin(request(SourceKind::kFolder, "data/photos"));
+  ASSERT_TRUE(id) << id.error().message;
+  EXPECT_EQ(wait_until_solved(desk, *id).images_done, 5U);
+}
+
 TEST_F(CalibrationDeskTest, CalibratesTheCameraOfAScenario) {
   CalibrationDesk desk(options());
   DeskRequest wanted = request(SourceKind::kScenario, "course");
@@ -107,10 +124,13 @@ TEST_F(CalibrationDeskTest, CalibratesTheCameraOfAScenario) {
 }
 
 TEST_F(CalibrationDeskTest, OpensNothingElse) {
+  fs::create_directory_symlink(data() / "photos", data() / "linked");
   CalibrationDesk desk(options());
   for (const auto& [kind, name] : std::vector<std::pair<SourceKind, std::string>>{
            {SourceKind::kFolder, "data"},
            {SourceKind::kFolder, "data/../private"},
+           {SourceKind::kFolder, "data/linked"},
+           {SourceKind::kFolder, ""},
            {SourceKind::kFolder, (folder_.path() / "private").string()},
            {SourceKind::kRecording, "data/none.bag"},
            {SourceKind::kRecording, "data/photos/p8.png"},
