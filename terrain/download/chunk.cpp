@@ -206,18 +206,25 @@ Verdict judge_chunk(const ChunkLayer& layer, const Chunk& chunk, const HttpReply
   return judge_raster(layer, chunk, file.name());
 }
 
-Status write_chunk(const Chunk& chunk, const HttpReply& reply) {
-  const fs::path part = chunk.file.string() + ".part";
+Status write_renamed(const fs::path& file, std::string_view bytes) {
+  const fs::path part = file.string() + ".part";
+  std::error_code failed;
+  bool written = false;
   {
     std::ofstream out(part, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(reply.body.data()),
-              static_cast<std::streamsize>(reply.body.size()));
-    if (!out.flush()) return Error{ErrorCode::kIo, part.string() + ": cannot be written"};
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    written = static_cast<bool>(out.flush());
   }
-  std::error_code failed;
-  fs::rename(part, chunk.file, failed);
-  if (failed) return Error{ErrorCode::kIo, chunk.file.string() + ": " + failed.message()};
-  return {};
+  if (written) fs::rename(part, file, failed);
+  if (written && !failed) return {};
+  const std::string why = written ? failed.message() : "cannot be written";
+  fs::remove(part, failed);
+  return Error{ErrorCode::kIo, file.string() + ": " + why};
+}
+
+Status write_chunk(const Chunk& chunk, const HttpReply& reply) {
+  return write_renamed(chunk.file,
+                       {reinterpret_cast<const char*>(reply.body.data()), reply.body.size()});
 }
 
 bool chunk_is_there(const ChunkLayer& layer, const Chunk& chunk) {

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "terrain/download.hpp"
@@ -49,7 +51,13 @@ struct ChunkLayer {
   bool heights = false;  ///< one band of 32-bit float, else three bands of 8 bit
   std::vector<Chunk> chunks;
   double transfer_bytes_per_px = 3.0;
+  /// Why the service's limits are not known, if others were assumed.
+  std::optional<Error> without_limits{};
 };
+
+/// Writes a file to a temporary name and renames it; nothing is left of one that cannot be written.
+/// Errors: kIo.
+[[nodiscard]] Status write_renamed(const std::filesystem::path& file, std::string_view bytes);
 
 /// Checks an answer without writing it: HTML or JSON instead of an image, a damaged or truncated
 /// raster (every block is read), wrong size, type or place.
@@ -57,7 +65,7 @@ struct ChunkLayer {
                                   const Chunk& chunk,
                                   const HttpReply& reply);
 
-/// Writes a checked answer to a temporary file and renames it. Errors: kIo.
+/// Writes a checked answer as write_renamed().
 [[nodiscard]] Status write_chunk(const Chunk& chunk, const HttpReply& reply);
 
 /// True if an earlier download left this chunk complete; a damaged one is removed.

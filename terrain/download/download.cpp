@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -145,8 +144,24 @@ nlohmann::json asked(const std::vector<ChunkLayer>& layers) {
   return {{"format_version", 1}, {"layers", all}};
 }
 
+/// Why a folder's download is not the one that the layers make.
+Error other_download(const fs::path& record, const std::vector<ChunkLayer>& layers) {
+  // The requests of the download that is resumed may follow from limits that are not known now.
+  for (const ChunkLayer& layer : layers) {
+    if (!layer.without_limits) continue;
+    return {layer.without_limits->code,
+            "the service's limits, by which this download was begun, are not known now: try again "
+            "later: " +
+                layer.without_limits->message};
+  }
+  return {ErrorCode::kConflict,
+          record.string() +
+              ": contains a download with other options; choose another folder, or remove it"};
+}
+
 /// Creates the folder, or accepts one that contains an equal, interrupted download.
-Status claim_folder(const fs::path& folder, const nlohmann::json& wanted) {
+Status claim_folder(const fs::path& folder, const std::vector<ChunkLayer>& layers) {
+  const nlohmann::json wanted = asked(layers);
   std::error_code failed;
   fs::create_directories(folder / "chunks", failed);
   if (failed) return Error{ErrorCode::kIo, folder.string() + ": " + failed.message()};
@@ -156,20 +171,15 @@ Status claim_folder(const fs::path& folder, const nlohmann::json& wanted) {
     const auto text = read_file_text(record, kMaxBytes);
     const auto found = text ? json_from_outside<nlohmann::json>(*text, record.string())
                             : Result<nlohmann::json>(text.error());
-    if (found && *found == wanted) return {};
-    return Error{
-        ErrorCode::kConflict,
-        record.string() +
-            ": contains a download with other options; choose another folder, or remove it"};
+    if (!found) return found.error();
+    if (*found == wanted) return {};
+    return other_download(record, layers);
   }
   if (fs::exists(folder / "world.json", failed)) {
     return Error{ErrorCode::kConflict,
                  folder.string() + ": contains another world; choose another folder"};
   }
-  std::ofstream out(record);
-  out << wanted.dump(2) << '\n';
-  if (!out.flush()) return Error{ErrorCode::kIo, record.string() + ": cannot be written"};
-  return {};
+  return write_renamed(record, wanted.dump(2) + '\n');
 }
 
 Status check_space(const fs::path& folder, const std::vector<ChunkLayer>& layers) {
@@ -263,7 +273,7 @@ Result<DownloadReport> download_world(const DownloadOptions& options,
   PoliteFetcher asker(quick, stop);
   const auto layers = lay_out_download(options, asker, report.warnings);
   if (!layers) return layers.error();
-  const Status claimed = claim_folder(options.folder, asked(*layers));
+  const Status claimed = claim_folder(options.folder, *layers);
   if (!claimed) return claimed.error();
   report.manifest = options.folder / "world.json";
   std::error_code failed;

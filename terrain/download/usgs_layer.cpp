@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "core/motion/pose.hpp"
 #include "core/outside/outside_json.hpp"
@@ -149,15 +148,7 @@ Result<ChunkLayer> usgs_layer(const DownloadOptions& options,
   auto limits = ask_image_service(service, fetcher);
   if (!limits) {
     if (limits.error().code == ErrorCode::kCancelled) return limits.error();
-    // The requests of a download that is resumed may follow from the limits.
-    std::error_code ignored;
-    if (options.chunk_px > ImageServiceLimits{}.width_px &&
-        std::filesystem::exists(options.folder / "download.json", ignored)) {
-      return Error{limits.error().code,
-                   "the service's limits, by which this download was begun, are not known now: try "
-                   "again later, or with --chunk-px 2048 in another folder: " +
-                       limits.error().message};
-    }
+    layer.without_limits = limits.error();
     warnings.push_back("the service's limits are not known; 4000 px are assumed: " +
                        limits.error().message);
     limits = ImageServiceLimits{};

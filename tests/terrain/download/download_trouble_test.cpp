@@ -172,6 +172,47 @@ TEST_F(DownloadTrouble, GoesOnWhereItStopped) {
   EXPECT_EQ(server.requests() - before, 2) << "only the services' limits are asked";
 }
 
+TEST_F(DownloadTrouble, IsNotResumedByLimitsThatAreOnlyAssumed) {
+  std::atomic<bool> broken{false};
+  std::atomic<bool> images{false};
+  const LocalHttpServer server([&](const HttpRequest& request) {
+    const bool image = request.query.contains("bbox");
+    if (image ? !images.load() : broken.load()) return words(500, "text/plain", "down");
+    return answer_rightly(request);
+  });
+  DownloadOptions options = options_for(server);
+  options.attempts = 1;
+  ASSERT_FALSE(download_world(options));
+  ASSERT_TRUE(std::filesystem::exists(options.folder / "download.json"));
+  broken.store(true);
+  images.store(true);
+  const auto refused = download_world(options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("by which this download was begun, are not known now"),
+            std::string::npos)
+      << refused.error().message;
+  broken.store(false);
+  const auto report = download_world(options);
+  ASSERT_TRUE(report) << report.error().message;
+  expect_right_places(report->manifest);
+}
+
+TEST_F(DownloadTrouble, ReportsADamagedRecordAsSuch) {
+  const LocalHttpServer server(answer_rightly);
+  const DownloadOptions options = options_for(server);
+  std::filesystem::create_directories(options.folder);
+  const std::filesystem::path record = options.folder / "download.json";
+  std::ofstream(record) << R"({"format_version": 1, "lay)";
+  const auto refused = download_world(options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find(record.string()), std::string::npos);
+  EXPECT_EQ(refused.error().message.find("other options"), std::string::npos)
+      << refused.error().message;
+  std::filesystem::remove(record);
+  EXPECT_TRUE(download_world(options));
+  EXPECT_FALSE(std::filesystem::exists(record.string() + ".part"));
+}
+
 TEST_F(DownloadTrouble, GoesOnAfterItWasKilled) {
   // Forked before the server starts its threads, one of which might hold a lock just then; the
   // server's address follows through a pipe.
