@@ -92,7 +92,8 @@ class DataflashPass {
   std::uint64_t skipped_bytes_ = 0;
   std::uint64_t damaged_places_ = 0;
   std::uint64_t left_out_records_ = 0;
-  bool is_ardu_plane_ = false;  ///< by the first text of its logs
+  std::uint64_t overtaken_records_ = 0;  ///< held ones whose type was declared again
+  bool is_ardu_plane_ = false;           ///< by the first text of its logs
   bool in_step_ = true;
 };
 
@@ -183,9 +184,16 @@ void DataflashPass::pass_held() {
                 [this](const std::optional<LogTime>& time, std::span<const std::uint8_t> record) {
                   RecordKind& kind = *kinds_[record[2]];
                   // Its type may have been declared again meanwhile, with other fields.
-                  if (kind.plan.format.size_bytes != record.size()) return;
+                  if (kind.plan.format.size_bytes != record.size()) {
+                    ++overtaken_records_;
+                    return;
+                  }
                   const RecordKind::Stream* const stream = stream_of(kind, record);
-                  if (stream != nullptr) pass(kind, *stream, time, record);
+                  if (stream == nullptr) {
+                    ++left_out_records_;
+                    return;
+                  }
+                  pass(kind, *stream, time, record);
                 });
 }
 
@@ -292,6 +300,8 @@ void DataflashPass::report() {
            " belong to no complete record and were skipped");
   warn(left_out_records_,
        "records were left out: only " + std::to_string(kMaxRecordStreams) + " streams are read");
+  warn(overtaken_records_,
+       "records were left out: their type was declared again before their time was known");
   warn(clock_.implausible(), "stamps of records are implausible and were not used");
   warn(table_.unusable(), "FMT records declare nothing usable");
   warn(table_.redeclared(), "FMT records declare a type again, with other fields");

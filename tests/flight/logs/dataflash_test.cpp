@@ -250,6 +250,18 @@ TEST(Dataflash, DoesNotBelieveASingleDamagedStamp) {
   EXPECT_EQ(read_log_trajectory(*log, {})->poses.size(), 48U);  // the last has no attitude after it
 }
 
+TEST(Dataflash, CountsHeldRecordsWhoseTypeIsDeclaredAgain) {
+  Bytes bytes = declarations();
+  append(bytes, pos_record(1'000'000, 470000000));  // held: the clock is not proven
+  append(bytes, format_record(2, 27, "POS", "QLLff", "TimeUS,Lat,Lng,Alt,RelHomeAlt"));
+  for (std::uint32_t i = 0; i < 20; ++i) append(bytes, att_record(1'005'000 + 20'000 * i));
+  const overfly::testing::TemporaryFolder folder;
+  const auto log = open_bytes(folder, bytes);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_THAT(log->warnings,
+              Contains(HasSubstr("1 records were left out: their type was declared again")));
+}
+
 TEST(Dataflash, SkipsDamageAndGoesOn) {
   Bytes bytes = declarations();
   for (std::uint32_t i = 0; i < 10; ++i) append(bytes, att_record(1'000'000 + 20'000 * i));
