@@ -23,6 +23,8 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 4> kTrajectoryExtensions = {
     ".tum", ".txt", ".csv", ".kitti"};
 
+constexpr const char* kTimesFile = "times.txt";
+
 bool has_trajectory_extension(const std::string& name) {
   const std::string lower = lower_case(name);
   return std::any_of(
@@ -32,7 +34,12 @@ bool has_trajectory_extension(const std::string& name) {
 }
 
 /// The times file that belongs to a KITTI file, if there is one.
-fs::path times_file_of(const fs::path& file) { return file.parent_path() / "times.txt"; }
+fs::path times_file_of(const fs::path& file) { return file.parent_path() / kTimesFile; }
+
+/// An upload of this name would be read as the times of all KITTI files in the folder of uploads.
+bool may_be_uploaded(const std::string& name) {
+  return has_trajectory_extension(name) && lower_case(name) != kTimesFile;
+}
 
 std::string format_of_trajectory(const fs::path& file) {
   const auto format = detect_trajectory(file);
@@ -76,8 +83,8 @@ Json error_json(const Error& error) {
 
 const UploadKind& trajectory_upload_kind() {
   static const UploadKind kind{"trajectory",
-                               ".tum, .txt, .csv, .kitti",
-                               has_trajectory_extension,
+                               ".tum, .txt, .csv, .kitti, and not be times.txt",
+                               may_be_uploaded,
                                [](const fs::path& file) -> Status {
                                  const auto read =
                                      read_trajectory(file, kServedTrajectoryLimits, nullptr);

@@ -144,6 +144,12 @@ TEST_F(TrajectoryRoutesTest, TakesUploadsThatAreTrajectories) {
   EXPECT_EQ(call("POST", post + "c.tum", std::string(100'000, ',')).status, 422);
   EXPECT_EQ(call("POST", post + "..%2Fc.tum", weaving_tum(1.0, 0.0)).status, 400);
   EXPECT_EQ(call("POST", post + "c.bin", weaving_tum(1.0, 0.0)).status, 400);
+  // It would be taken for the times of every KITTI file in the folder of uploads.
+  for (const char* name : {"times.txt", "Times.TXT"}) {
+    const Answer times = call("POST", post + name, weaving_tum(1.0, 0.0));
+    EXPECT_EQ(times.status, 400) << name;
+    EXPECT_THAT(times.body, HasSubstr("not be times.txt"));
+  }
   EXPECT_EQ(call("POST", post + "c.tum", std::string((1U << 20U) + 1U, ' ')).status, 413);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(server_.folder() / "uploads")) {
