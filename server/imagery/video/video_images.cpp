@@ -180,7 +180,12 @@ class VideoImages final : public ImageSource {
       warnings_.push_back(std::to_string(without_time) + " frames have no time and were left out");
     }
     std::sort(stamps_ns_.begin(), stamps_ns_.end());
-    stamps_ns_.erase(std::unique(stamps_ns_.begin(), stamps_ns_.end()), stamps_ns_.end());
+    const auto end = std::unique(stamps_ns_.begin(), stamps_ns_.end());
+    if (end != stamps_ns_.end()) {
+      warnings_.push_back(std::to_string(stamps_ns_.end() - end) +
+                          " frames have the time of another one and were left out");
+    }
+    stamps_ns_.erase(end, stamps_ns_.end());
     if (stamps_ns_.empty()) return unreadable("has no frames with a time");
     return {};
   }

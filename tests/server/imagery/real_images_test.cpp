@@ -9,6 +9,8 @@
 #include "middleware/ros1/findings.hpp"
 #include "server/camera/frame_remaker.hpp"
 #include "server/export/dataset_export.hpp"
+#include "server/export/video/vp9_encoder.hpp"
+#include "server/export/video/webm_file.hpp"
 #include "server/export/video_export.hpp"
 #include "server/files/png_file.hpp"
 #include "server/imagery/flight_images.hpp"
@@ -93,6 +95,30 @@ TEST_F(RealImages, OfADamagedVideoAreReadAsFarAsTheyGo) {
   }
   EXPECT_GT(opened, 10);
   EXPECT_GT(read, 100);
+}
+
+TEST(VideoImages, ReportFramesWithEqualTimes) {
+  if (!reads_videos()) GTEST_SKIP() << "no FFmpeg";
+  const overfly::testing::TemporaryFolder folder;
+  const fs::path file = folder.path() / "doubled.webm";
+  VideoSettings settings;
+  settings.width_px = 64;
+  settings.height_px = 48;
+  auto encoder = Vp9Encoder::open(settings).value();
+  auto webm = WebmFile::create(file, 64, 48).value();
+  for (int i = 0; i < 6; ++i) {
+    const Image picture(64, 48, 3, static_cast<std::uint8_t>(40 * i));
+    for (VideoPacket& packet : encoder.encode(picture, 100 * i).value()) {
+      if (i == 3) packet.t_ms = 200;
+      ASSERT_TRUE(webm.add(packet).ok());
+    }
+  }
+  ASSERT_TRUE(webm.finish(600).ok());
+  const auto images = open_video_images(file, nullptr);
+  ASSERT_TRUE(images.ok()) << images.error().message;
+  EXPECT_EQ((*images)->stamps_ns().size(), 5U);
+  EXPECT_THAT((*images)->warnings(),
+              Contains(HasSubstr("1 frames have the time of another one and were left out")));
 }
 
 TEST_F(RealImages, OfADataSetWithAnotherCalibrationCauseAWarning) {
