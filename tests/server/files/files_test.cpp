@@ -60,6 +60,30 @@ TEST(TakeName, WorksWithoutHardLinks) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "part2"));
 }
 
+TEST(TakeName, WorksWhereNothingRenamesWithoutReplacing) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"file", "folder"}) {
+    const std::filesystem::path name = folder.path() / kind;
+    for (const char* part : {"part", "part2"}) {
+      const std::filesystem::path content =
+          std::string(kind) == "file" ? folder.path() / part : folder.path() / part / "a";
+      std::filesystem::create_directories(content.parent_path());
+      overfly::testing::write_text(content, part);
+      const auto taken = take_reserved_name(folder.path() / part, name);
+      ASSERT_TRUE(taken.ok()) << taken.error().message;
+      EXPECT_EQ(*taken, std::string(part) == "part") << kind;
+      EXPECT_NE(std::filesystem::exists(content), *taken);
+    }
+    EXPECT_EQ(overfly::testing::read_text(std::string(kind) == "file" ? name
+                                                                      : folder.path() / kind / "a"),
+              "part");
+    std::filesystem::remove_all(folder.path() / "part2");
+  }
+  EXPECT_EQ(take_reserved_name(folder.path() / "none", folder.path() / "other").error().code,
+            ErrorCode::kIo);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
 TEST(Jpeg, KeepsSizeChannelsAndNearlyTheValues) {
   for (const int channels : {1, 3}) {
     const Image image = gradient(channels);
