@@ -107,8 +107,9 @@ class TileSource : public HeightQuery {
   [[nodiscard]] virtual Eigen::Vector2d height_range_m() const = 0;
   /// Credit line of the imagery and elevation.
   [[nodiscard]] virtual std::string attribution() const = 0;
-  /// kIo after a height could not be read (a truncated file, a removed disk): height queries cannot
-  /// report errors and return the lowest ground. `tile` returns the same error.
+  /// kIo after a height could not be read (a truncated file, a removed disk), by any user of the
+  /// world: height queries cannot report errors and return the lowest ground. Those of one's own
+  /// queries: HeightErrors.
   [[nodiscard]] virtual Status status() const { return {}; }
 
  private:

@@ -54,8 +54,10 @@ Status FrameMaker::open_world() {
   auto world = worlds.get(scenario_, progress);
   if (!world) return world.error();
   opened_ = *world;
-  world_ = bare_world(opened_);
-  tiles_ = std::make_shared<const WatchedTiles>(world_->tiles, options_.cancel);
+  tiles_ = std::make_shared<const WatchedTiles>(opened_->world.tiles, options_.cancel);
+  auto watched = std::make_shared<terrain::World>(opened_->world);
+  watched->tiles = tiles_;
+  world_ = std::move(watched);
   return {};
 }
 

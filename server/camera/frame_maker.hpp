@@ -142,8 +142,8 @@ class FrameMaker {
   std::unique_ptr<StageTimer> own_stages_;
   StageTimer& stages_;
   std::shared_ptr<const OpenedWorld> opened_;
-  std::shared_ptr<const terrain::World> world_;   ///< the world of opened_
-  std::shared_ptr<const WatchedTiles> tiles_;     ///< the tiles of the world
+  std::shared_ptr<const WatchedTiles> tiles_;     ///< those of opened_
+  std::shared_ptr<const terrain::World> world_;   ///< the world of opened_, with tiles_
   std::unique_ptr<flight::SensorSuite> sensors_;  ///< null without sensors
   std::unique_ptr<TruthWindow> truth_;
   std::optional<std::int64_t> duration_ns_;

@@ -11,6 +11,7 @@
 #include "server/maps/map_tile.hpp"
 #include "server/maps/world_list.hpp"
 #include "server/worlds/world_extent.hpp"
+#include "terrain/height_errors.hpp"
 #include "terrain/sea_level.hpp"
 
 namespace overfly::server {
@@ -201,6 +202,7 @@ Result<std::vector<GroundHeight>> MapService::heights(const std::string& name,
   const auto world = open_again(name, cancelled);
   if (!world) return world.error();
   const terrain::TileSource& tiles = (*world)->tiles();
+  const terrain::HeightErrors errors;
   std::vector<GroundHeight> heights;
   heights.reserve(points.size());
   double guess_m = tiles.frame().origin().alt_ellipsoid_m;
@@ -210,7 +212,7 @@ Result<std::vector<GroundHeight>> MapService::heights(const std::string& name,
     guess_m = ground.alt_ellipsoid_m;
     heights.push_back({guess_m, tiles.has_imagery(ground.map_m.x(), ground.map_m.y())});
   }
-  if (Status status = tiles.status(); !status) return status.error();
+  if (Status read = errors.status(); !read) return read.error();
   return heights;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/maps/ground_place.hpp"
+#include "terrain/height_errors.hpp"
 
 namespace overfly::server {
 namespace {
@@ -201,7 +202,9 @@ Result<Image> draw_map_tile(const MapWorld& world,
   plane.corner.x() += std::round(middle_x - plane.place(0.5 * kMapTilePx, 0.0).x());
   const PixelRange range = tile_range(plane, world.box());
   if (range.left >= range.right || range.top >= range.bottom) return Image();
+  const terrain::HeightErrors errors;
   const NodeGrid nodes(world.tiles(), plane, range);
+  if (Status read = errors.status(); !read) return read.error();
   LevelSampler sampler(world, level_for(nodes.pixel_m(), world.tiles().grid().texel_m), cancelled);
   Image image(kMapTilePx, kMapTilePx, 4);
   bool any = false;

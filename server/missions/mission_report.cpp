@@ -8,6 +8,7 @@
 #include "core/motion/pose.hpp"
 #include "server/camera/airframe_flight.hpp"
 #include "server/missions/camera_view.hpp"
+#include "terrain/height_errors.hpp"
 
 namespace overfly::server {
 namespace {
@@ -102,7 +103,7 @@ class Reporter {
       const double way = i == 0 ? 0.0 : (at - states_[i - 1].position_world_m).head<2>().norm();
       distances_m_.push_back(i == 0 ? 0.0 : distances_m_.back() + way);
     }
-    return tiles_.status();
+    return {};
   }
 
   [[nodiscard]] double clearance_m(std::size_t index) const {
@@ -311,6 +312,7 @@ Result<MissionReport> report_mission(const Scenario& scenario,
   if (scenario.duration_s) {
     setup->duration_max_s = std::min(*scenario.duration_s, autopilot::kFlightMaxS);
   }
+  const terrain::HeightErrors errors;
   const auto preview = autopilot::preview_mission(*setup, world.tiles, cancel);
   if (!preview) return preview.error().in("flight.mission");
   MissionReport report;
@@ -320,6 +322,7 @@ Result<MissionReport> report_mission(const Scenario& scenario,
   Reporter reporter(scenario, world, request, **camera, setup->mission, preview->states);
   if (Status status = reporter.run(cancel, report); !status) return status.error();
   add_places(*setup, *world.tiles, reporter, report);
+  if (Status read = errors.status(); !read) return read.error();
   add_warnings(request, *setup, report);
   return report;
 }

@@ -37,7 +37,7 @@ ViewRenderers::WorldView* ViewRenderers::known_view(const std::string& run_id) {
       return run.run_id == run_id;
     });
     if (watched == view->runs.end()) continue;
-    if (!view->world->tiles->status()) {
+    if (!view->tiles->tiles().status()) {
       damaged_run_id_ = run_id;
       continue;
     }
@@ -68,7 +68,7 @@ Result<ViewRenderers::WorldView*> ViewRenderers::of_run(const std::string& run_i
   if (!world) return world.error();
   const RendererChoice& choice = (*scenario)->renderer;
   const auto same = std::find_if(views_.begin(), views_.end(), [&](const WorldView& view) {
-    return view.world == *world && view.choice == choice;
+    return view.world == *world && view.choice == choice && view.tiles->tiles().status();
   });
   if (same != views_.end()) {
     views_.splice(views_.begin(), views_, same);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "terrain/height_errors.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -49,7 +51,10 @@ HeightLattice::Heights HeightLattice::get(int lattice, int chunk_i, int chunk_j)
     const auto found = chunks_.find(key);
     if (found != chunks_.end()) return found->second;
   }
+  const HeightErrors errors;
   Heights heights = read(lattice, chunk_i, chunk_j);
+  // Heights that could not be read are not kept for others.
+  if (!errors.status()) return heights;
   const std::lock_guard lock(mutex_);
   // Readers hold the chunks they use; clearing all is rare and keeps this simple.
   if (chunks_.size() >= kMostChunks) chunks_.clear();

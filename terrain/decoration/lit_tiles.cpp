@@ -6,6 +6,7 @@
 #include "terrain/decoration/light_field.hpp"
 #include "terrain/decoration/tile_decorator.hpp"
 #include "terrain/floor_div.hpp"
+#include "terrain/height_errors.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -57,7 +58,9 @@ class LitTiles final : public TileDecorator {
                                        const Cancelled& cancelled) const override {
     auto read = base().tile(id, cancelled);
     if (!read) return read;
+    const HeightErrors errors;
     if (id.level >= 0) shine(id, *read);
+    if (Status heights = errors.status(); !heights) return heights.error();
     return read;
   }
 

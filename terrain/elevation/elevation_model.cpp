@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/text/percent.hpp"
+#include "terrain/height_errors.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -69,6 +70,7 @@ MapRect covered_part(const Rasters& rasters, const MapRect& area) {
 PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m) {
   return [rasters = std::move(rasters), area, spacing_m](
              int column, int row, int columns, int rows) -> Result<RawPosts> {
+    const HeightErrors errors;
     RawPosts posts;
     posts.grid.columns = columns;
     posts.grid.rows = rows;
@@ -89,9 +91,7 @@ PostReader merged_reader(Rasters rasters, const MapRect& area, double spacing_m)
                          });
       }
     }
-    for (const RasterPtr& raster : rasters) {
-      if (auto error = raster->read_error()) return *error;
-    }
+    if (Status read = errors.status(); !read) return read.error();
     return posts;
   };
 }

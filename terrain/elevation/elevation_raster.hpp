@@ -61,9 +61,8 @@ class ElevationRaster {
     const double step = has_overviews_ ? 1.0 : step_;
     return step * step * window_.columns * window_.rows;
   }
-  /// NaN outside, where there is no data, and where the file cannot be read (see `read_error`).
+  /// NaN outside, where there is no data, and where the file cannot be read (see HeightErrors).
   [[nodiscard]] double height_m(double x_map_m, double y_map_m) const;
-  [[nodiscard]] std::optional<Error> read_error() const { return posts_->read_error(); }
 
   /// True if `height_m` found values that do not occur on earth.
   [[nodiscard]] bool implausible_seen() const { return implausible_; }

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <limits>
 
+#include "terrain/height_errors.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -105,6 +107,7 @@ const HeightGrid& PagedHeights::near(int level, int column, int row) const {
   if (slot.key == key) return *slot.block;
   auto found = block(level, column, row);
   if (!found) {
+    HeightErrors::add(found.error());
     const std::lock_guard lock(error_mutex_);
     if (!read_error_) read_error_ = found.error();
     return unreadable_;

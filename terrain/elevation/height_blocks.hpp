@@ -62,12 +62,12 @@ class PagedHeights {
   PagedHeights(int columns, int rows, std::shared_ptr<BlockCache> cache, Loader loader);
 
   /// Bilinear between the posts of a level (post centres at integers of that level); outside, the
-  /// edge's value. NaN if a contributing post is NaN or could not be read (see `read_error`).
+  /// edge's value. NaN if a contributing post is NaN or could not be read (see HeightErrors).
   [[nodiscard]] double bilinear(int level, double column, double row) const;
   /// The block itself. Errors: those of the loader.
   [[nodiscard]] Result<BlockPtr> block(int level, int column, int row) const;
 
-  /// The first read error of a block, if there was one.
+  /// The first read error of a block on any thread, if there was one.
   [[nodiscard]] std::optional<Error> read_error() const;
 
   [[nodiscard]] int columns(int level) const;

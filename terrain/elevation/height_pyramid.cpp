@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "terrain/elevation/steep_steps.hpp"
+#include "terrain/height_errors.hpp"
 
 namespace overfly::terrain {
 namespace {
@@ -172,6 +173,7 @@ Result<HeightGrid> HeightPyramid::unfilled(int level, int column, int row) const
 Result<HeightGrid> HeightPyramid::block(int level, int column, int row) const {
   auto result = unfilled(level, column, row);
   if (!result || level + 1 >= filled_.levels()) return result;
+  const HeightErrors errors;
   const int last_column = filled_.columns(level) - 1;
   const int last_row = filled_.rows(level) - 1;
   for (int j = 0; j < result->rows; ++j) {
@@ -183,7 +185,7 @@ Result<HeightGrid> HeightPyramid::block(int level, int column, int row) const {
       height = static_cast<float>(filled_.bilinear(level + 1, 0.5 * x - 0.25, 0.5 * y - 0.25));
     }
   }
-  if (auto error = filled_.read_error()) return *error;
+  if (Status read = errors.status(); !read) return read.error();
   return result;
 }
 

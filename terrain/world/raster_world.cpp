@@ -141,8 +141,6 @@ Result<Tile> RasterWorld::read_tile(const TileId& id, const Cancelled& cancelled
     return Error{ErrorCode::kInvalidArgument,
                  "tile level = " + std::to_string(id.level) + ": must be in [0, 24)"};
   }
-  // Height queries cannot report errors: the next tile does, so that a flight ends with the reason.
-  if (const Status heights = elevation_.status(); !heights) return heights.error();
   if (cache_ && cache_->holds(id.level)) return cache_->tile(id);
   std::optional<Tile> result;
   for (const MappedImagery& layer : imagery_) {

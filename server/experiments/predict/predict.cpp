@@ -68,9 +68,11 @@ class Predictor {
       index = *found;
     }
     show(0.0, "opening the world");
-    const Result<OpenedWorld> opened =
+    Result<OpenedWorld> opened =
         open_scenario_world(scenario_, [this](double) { return !is_cancelled(options_.cancel); });
     if (!opened) return opened.error();
+    threads_.tiles = std::make_shared<const WatchedTiles>(opened->world.tiles, options_.cancel);
+    opened->world.tiles = threads_.tiles;
     const terrain::World& world = opened->world;
     const auto truth = create_truth(scenario_, world, options_.cancel);
     if (!truth) return truth.error();
@@ -97,7 +99,6 @@ class Predictor {
     for (const std::string& warning : (*truth)->warnings()) {
       prediction.warnings.push_back(warning);
     }
-    threads_.tiles = std::make_shared<const WatchedTiles>(world.tiles, options_.cancel);
     threads_.jobs = options_.jobs;
     threads_.cancel = options_.cancel;
     if (Status status = add_flight(camera, *flight); !status) return status.error();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/motion/pose.hpp"
+#include "terrain/height_errors.hpp"
 #include "terrain/world.hpp"
 #include "terrain/world/drape.hpp"
 #include "tests/support/support.hpp"
@@ -53,6 +54,25 @@ Tile lit_tile(const std::shared_ptr<const TileSource>& tiles,
 /// Light at a texel of level 0, by its place from the tile's corner.
 double light_at(const Tile& tile, int x, int y) {
   return linear_from_srgb(tile.rgb.at(kTileBorder + x, kTileBorder + y)) / linear_from_srgb(kGrey);
+}
+
+TEST(Light, FromHeightsThatCouldNotBeReadIsNotKept) {
+  bool damaged = true;
+  const auto ground = grey_ground(
+      [&](double east, double) {
+        if (damaged) HeightErrors::add({ErrorCode::kIo, "a damaged block"});
+        return damaged ? 0.0 : 0.3 * east;
+      },
+      {-300.0, 300.0});
+  const LightOptions options = sun_at(90.0, 40.0);
+  const auto lit = with_light(ground, options).value();
+  const auto dark = lit->tile({0, 1, 1});
+  ASSERT_FALSE(dark);
+  EXPECT_EQ(dark.error().message, "a damaged block");
+  damaged = false;
+  const auto tile = lit->tile({0, 1, 1});
+  ASSERT_TRUE(tile) << tile.error().message;
+  EXPECT_EQ(tile->rgb.data, lit_tile(ground, options, {0, 1, 1}).rgb.data);
 }
 
 TEST(Light, FollowsTheCosineLawOnARamp) {

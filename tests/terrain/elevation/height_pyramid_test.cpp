@@ -8,6 +8,8 @@
 #include <random>
 #include <thread>
 
+#include "terrain/height_errors.hpp"
+
 namespace overfly::terrain {
 namespace {
 
@@ -127,6 +129,30 @@ TEST(HeightPyramid, RemembersWhatWentWrong) {
   ASSERT_TRUE(pyramid.filled().read_error());
   EXPECT_EQ(pyramid.filled().read_error()->code, ErrorCode::kIo);
   EXPECT_EQ(pyramid.filled().read_error()->message, "no posts at 256");
+}
+
+TEST(HeightPyramid, AnErrorEndsNoOtherQuery) {
+  const HeightGrid raw{600, 600, std::vector<float>(std::size_t{600} * 600, 100.0F)};
+  const PostReader reader = reader_of(raw);
+  const HeightPyramid pyramid(raw.columns,
+                              raw.rows,
+                              std::make_shared<BlockCache>(std::size_t{1} << 20U),
+                              [&](int column, int row, int columns, int rows) -> Result<RawPosts> {
+                                if (column == 512 && row == 512)
+                                  return Error{ErrorCode::kIo, "a damaged block"};
+                                return reader(column, row, columns, rows);
+                              });
+  const HeightErrors all;
+  {
+    const HeightErrors damaged;
+    EXPECT_TRUE(std::isnan(pyramid.filled().bilinear(0, 550.0, 550.0)));
+    ASSERT_FALSE(damaged.status());
+    EXPECT_EQ(damaged.status().error().message, "a damaged block");
+  }
+  const HeightErrors whole;
+  EXPECT_EQ(pyramid.filled().bilinear(0, 130.0, 5.0), 100.0);
+  EXPECT_TRUE(whole.status());
+  EXPECT_FALSE(all.status());
 }
 
 }  // namespace
