@@ -55,6 +55,8 @@ Server::Server() : impl_(std::make_unique<Impl>()) {}
 
 Server::~Server() {
   if (impl_->context) {
+    impl_->context->sweeps.request_stop();
+    impl_->context->studies.request_stop();
     impl_->context->sessions.close_all(kFarewell);
     impl_->context->gate.close();
     impl_->context->readers.stop();

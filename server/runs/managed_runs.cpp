@@ -50,15 +50,16 @@ ManagedRuns::ManagedRuns(RunManagerOptions manager_options)
       budget_(budget_of(options)) {}
 
 ManagedRuns::~ManagedRuns() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    for (const auto& run : queue_) release_run(options.runs_folder, run->id);
-    queue_.clear();
-    for (auto& [id, run] : runs_) run->cancel = true;
-  }
-  wake_.notify_all();
+  cancel_all();
   for (std::thread& thread : threads_) thread.join();
+  for (const auto& run : queue_) release_run(options.runs_folder, run->id);
+}
+
+void ManagedRuns::cancel_all() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  for (auto& [id, run] : runs_) run->cancel = true;
+  wake_.notify_all();
 }
 
 SourcePolicy ManagedRuns::sources() const {
@@ -116,6 +117,7 @@ Result<RunInfo> ManagedRuns::enqueue(Scenario scenario,
   }
   const std::lock_guard lock(mutex_);
   if (std::optional<Result<RunInfo>> earlier = info_by_key(key, report)) return *earlier;
+  if (stopping_) return Error{ErrorCode::kConflict, "the server is stopping"};
   if (queue_.size() >= options.max_waiting_runs) {
     report.refusal = StartReport::Refusal::kQueueFull;
     return Error{ErrorCode::kConflict,

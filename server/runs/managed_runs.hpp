@@ -84,6 +84,8 @@ class ManagedRuns {
   [[nodiscard]] std::optional<Scenario> active_scenario(const std::string& id) const;
   /// False if the run is not queued or running in this process.
   bool cancel(const std::string& id);
+  /// As RunManager.
+  void cancel_all();
   [[nodiscard]] bool is_live(const std::string& id) const;
   /// Forgets a run without a folder. False if there is no such run.
   bool forget_unflown(const std::string& id);

@@ -133,6 +133,8 @@ Status RunManager::cancel(const std::string& id) {
   return Error{ErrorCode::kConflict, "run \"" + id + "\" is neither queued nor running here"};
 }
 
+void RunManager::cancel_all() { impl_->cancel_all(); }
+
 Status RunManager::remove(const std::string& id) {
   if (impl_->is_live(id)) {
     return Error{ErrorCode::kConflict, "run \"" + id + "\" has not ended: cancel it first"};

@@ -55,7 +55,8 @@ class RunManager {
   /// Starts (or queues) a run of a scenario with overrides. The same idempotency key returns the
   /// same run for a day.
   /// Errors: kNotFound; kInvalidArgument with the invalid fields; kConflict if the queue is full,
-  /// or if the key belongs to another request; kUnsupported if it needs more memory than there is.
+  /// if the key belongs to another request, or after cancel_all; kUnsupported if it needs more
+  /// memory than there is.
   [[nodiscard]] Result<RunInfo> start(const std::string& scenario,
                                       const std::vector<Override>& overrides,
                                       const IdempotencyKey& key = {},
@@ -82,6 +83,9 @@ class RunManager {
   [[nodiscard]] Result<std::shared_ptr<RunTimeline>> timeline(const std::string& id);
   /// Errors: kNotFound; kConflict if it is not running or queued.
   Status cancel(const std::string& id);
+  /// Cancels the runs that fly and starts no more: those in the queue stay there. Returns at once;
+  /// the destructor waits for their ends.
+  void cancel_all();
   /// Deletes the folder. If several threads call it at the same time, one succeeds.
   /// Errors: kNotFound; kConflict while it runs, while another process uses it, and for a run of a
   /// sweep or a study.

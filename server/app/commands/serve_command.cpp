@@ -143,6 +143,8 @@ int serve(const ServeArguments& arguments) {
   }
   std::cout << "Overfly is at " << (*server)->url() << std::endl;
   wait_for_stop_signal();
+  // First of all: the farewell to viewers and the ends of sweeps and studies take their time.
+  (*runs)->cancel_all();
   spdlog::info("stopping: running flights are cancelled; their folders stay readable");
   warn_of_waiting_runs((*runs)->runs());
   return kExitOk;

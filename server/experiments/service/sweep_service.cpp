@@ -262,12 +262,14 @@ Status SweepService::cancel(const std::string& name) {
   return {};
 }
 
+void SweepService::request_stop() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  if (flight_) flight_->cancel = true;
+}
+
 void SweepService::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    if (flight_) flight_->cancel = true;
-  }
+  request_stop();
   if (thread_.joinable()) thread_.join();
 }
 

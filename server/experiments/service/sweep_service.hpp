@@ -88,7 +88,9 @@ class SweepService {
   /// Ends the flights in progress; the results stay.
   /// Errors: kNotFound; kConflict if this server does not fly it.
   [[nodiscard]] Status cancel(const std::string& name);
-  /// Cancels the sweep in progress, waits for its end and refuses further ones.
+  /// Cancels the sweep in progress and refuses further ones.
+  void request_stop();
+  /// The same, and waits for its end.
   void stop();
 
  private:

@@ -370,12 +370,14 @@ Status StudyService::remove(const std::string& name) {
   return remove_run_folder(folder->path());
 }
 
+void StudyService::request_stop() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  wake_.notify_all();
+}
+
 void StudyService::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    wake_.notify_all();
-  }
+  request_stop();
   if (thread_.joinable()) thread_.join();
 }
 

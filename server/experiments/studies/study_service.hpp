@@ -73,7 +73,9 @@ class StudyService {
   /// Deletes its folder with the runs of its flights.
   /// Errors: as entry; kConflict while it waits or is made; kIo.
   [[nodiscard]] Status remove(const std::string& name);
-  /// Ends the study in progress and refuses further ones.
+  /// Asks the study in progress to end, and refuses further ones.
+  void request_stop();
+  /// The same, and waits for its end.
   void stop();
 
  private:

@@ -163,6 +163,19 @@ TEST_F(RunLimitsTest, RunsThatWaitLeaveNoFolderWhenTheServerStops) {
   }
 }
 
+TEST_F(RunLimitsTest, ServerThatStopsCancelsAllFlightsBeforeItEnds) {
+  const auto runs = manager();
+  const std::string flying = runs->start("small", endless()).value().id;
+  wait_for_first_frame(*runs->timeline(flying).value());
+  const std::string waiting = runs->start("small", {}).value().id;
+  runs->cancel_all();
+  EXPECT_EQ(wait_for_end(*runs, flying).status, RunStatus::kCancelled);
+  EXPECT_EQ(runs->run(waiting).value().status, RunStatus::kQueued);
+  const auto refused = runs->start("small", {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, "the server is stopping");
+}
+
 std::optional<std::string> run_of(IdempotencyKeys& keys,
                                   const std::string& key,
                                   IdempotencyKeys::Time now) {
