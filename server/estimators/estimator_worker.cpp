@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/cancel.hpp"
 #include "core/measure/crc32.hpp"
 #include "core/measure/processor_time.hpp"
 #include "core/time.hpp"
@@ -200,7 +201,8 @@ EstimatorEvent EstimatorWorker::answer(const Waiting& waiting) {
   event.record = lost_record(waiting.frame);
   if (crashed_) return event;
   Result<VoEstimate> estimate = track(waiting.frame);
-  if (estimate) hold_back(waiting);
+  // The run was stopped before the estimator had taken its time for this frame.
+  if (estimate && !hold_back(waiting)) return drop_of(waiting.frame);
   event.latency_ms = static_cast<double>(clock_.now_ns() - waiting.handed_over_ns) * 1e-6;
   constexpr std::int64_t kAnswersPerUse = 16;
   if (!estimate || answers_++ % kAnswersPerUse == 0) event.use = use();
@@ -248,12 +250,15 @@ std::vector<std::string> EstimatorWorker::take_log() {
   return belong_to_events ? std::vector<std::string>() : take_lines();
 }
 
-void EstimatorWorker::hold_back(const Waiting& waiting) {
-  if (options_.throttle_hz <= 0.0) return;
+bool EstimatorWorker::hold_back(const Waiting& waiting) {
+  if (options_.throttle_hz <= 0.0) return true;
   // Counts from when it could take the frame, not from when this thread woke up, to avoid drift.
   const std::int64_t taken_ns = std::max(waiting.handed_over_ns, free_at_ns_);
   free_at_ns_ = std::max(taken_ns + period_ns(options_.throttle_hz), clock_.now_ns());
-  clock_.sleep_until_ns(free_at_ns_);
+  return clock_.wait_until_ns(free_at_ns_, [this] {
+    const std::lock_guard lock(mutex_);
+    return stopping_ || is_cancelled(options_.cancel);
+  });
 }
 
 bool EstimatorWorker::takes_debug(std::int64_t t_ns) {

@@ -1,6 +1,7 @@
 // Runs one estimator on its own thread.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,9 @@ struct EstimatorWorkerOptions {
   /// The estimator reads the image in this process: its CRC is computed after the estimator
   /// returns.
   bool in_process = true;
+  /// Ends the waiting of an estimator that is held to its rate; may be null, must outlive the
+  /// worker.
+  const std::atomic<bool>* cancel = nullptr;
   /// Called with each answer at once, on the worker's thread; may be empty.
   std::function<void(const EstimateRecord&)> answered;
 };
@@ -99,7 +103,8 @@ class EstimatorWorker {
   [[nodiscard]] std::vector<std::string> take_lines();
   [[nodiscard]] EstimatorEvent answer(const Waiting& waiting);
   [[nodiscard]] Result<VoEstimate> track(const VoFrame& frame);
-  void hold_back(const Waiting& waiting);
+  /// False if the run was stopped meanwhile.
+  [[nodiscard]] bool hold_back(const Waiting& waiting);
   /// Whether a frame gets a debug image, by the rate of them.
   [[nodiscard]] bool takes_debug(std::int64_t t_ns);
 

@@ -258,7 +258,9 @@ Status FlightRun::keep_pace(std::int64_t start_ns, PictureRate& pictures) {
       pictures.frame_missed(clock_.now_ns());
       continue;
     }
-    if (now_ns < t_ns) clock_.sleep_until_ns(start_ns + t_ns);
+    const bool waited =
+        now_ns >= t_ns || clock_.wait_until_ns(start_ns + t_ns, [this] { return cancelled(); });
+    if (!waited) return stopped();
     Result<std::optional<Pending>> made = make_frame(k);
     if (!made || !*made) {
       if (!made) return made.error();

@@ -105,6 +105,7 @@ Status FlightRun::open_estimators() {
       EstimatorWorkerOptions worker;
       worker.debug_hz = scenario_.record_debug_hz;
       worker.throttle_hz = spec.throttle_hz;
+      worker.cancel = options_.cancel;
       // In addition to the pending frames, the one whose answer the next record waits for.
       if (scenario_.pacing == Pacing::kLockstep) {
         worker.frames_ahead = lockstep_frames_ahead(scenario_) + 1;

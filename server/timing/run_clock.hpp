@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 namespace overfly::server {
 
@@ -15,6 +16,13 @@ class RunClock {
   virtual ~RunClock() = default;
   [[nodiscard]] virtual std::int64_t now_ns() = 0;
   virtual void sleep_until_ns(std::int64_t t_ns) = 0;
+  /// Sleeps until that instant, or until `cancelled()`, which the machine's clock asks every 50 ms.
+  /// @return whether it was not cancelled
+  [[nodiscard]] virtual bool wait_until_ns(std::int64_t t_ns,
+                                           const std::function<bool()>& cancelled) {
+    sleep_until_ns(t_ns);
+    return !cancelled();
+  }
   virtual void enter() {}
   virtual void leave() {}
 };

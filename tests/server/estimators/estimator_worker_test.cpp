@@ -76,6 +76,22 @@ TEST(EstimatorWorker, WhateverAnEstimatorThrowsIsItsCrash) {
   }
 }
 
+TEST(EstimatorWorker, ARunThatIsStoppedDoesNotWaitForAThrottledEstimator) {
+  std::atomic<bool> cancel = false;
+  EstimatorWorkerOptions options;
+  options.throttle_hz = 1e-6;
+  options.cancel = &cancel;
+  EstimatorWorker worker(std::make_unique<Thrower>(""), options, machine_clock());
+  worker.submit(frame_of(0));
+  cancel = true;
+  worker.wait_until_idle();
+  const std::vector<EstimatorEvent> events = worker.take_events();
+  ASSERT_THAT(events, SizeIs(1));
+  EXPECT_TRUE(events.front().record.dropped);
+  cancel = false;
+  worker.submit(frame_of(1));  // whose wait ends with the worker
+}
+
 /// One allocation after the other fails; after each the worker answers on.
 TEST(EstimatorWorker, TooLittleMemoryForAnAnswerIsToldToTheRunAndTheWorkerGoesOn) {
   int told = 0;

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <functional>
 #include <map>
 
 #include "server/files/whole_file.hpp"
@@ -140,6 +142,36 @@ TEST_F(RealTime, BusyEstimatorGetsTheLatestFrameAndTheOthersAreListed) {
   EXPECT_THAT(counts(**recorded, &EstimateRow::dropped_frames), ElementsAre(0, 1, 2));
   EXPECT_THAT(counts(*options_.timeline, &EstimateRow::dropped_frames), ElementsAre(0, 1, 2));
   EXPECT_THAT(counts(**recorded, &EstimateRow::unanswered_frames), ElementsAre(0, 0, 0));
+}
+
+/// Time passes only in waits, the third of which is cancelled.
+class CancellingClock final : public RunClock {
+ public:
+  explicit CancellingClock(std::atomic<bool>& cancel) : cancel_(cancel) {}
+  std::int64_t now_ns() override { return now_ns_; }
+  void sleep_until_ns(std::int64_t t_ns) override { now_ns_ = t_ns; }
+  bool wait_until_ns(std::int64_t t_ns, const std::function<bool()>& cancelled) override {
+    if (++waits_ == 3) cancel_ = true;
+    if (cancelled()) return false;
+    now_ns_ = t_ns;
+    return true;
+  }
+
+ private:
+  std::atomic<bool>& cancel_;
+  std::atomic<std::int64_t> now_ns_ = 0;
+  int waits_ = 0;
+};
+
+TEST_F(RealTime, ACancelledFlightDoesNotWaitForItsNextFrame) {
+  std::atomic<bool> cancel = false;
+  CancellingClock clock(cancel);
+  options_.clock = &clock;
+  options_.cancel = &cancel;
+  const auto run = run_scenario(testing::small_scenario({"pacing=real_time"}), options_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  EXPECT_EQ(run->info.status, RunStatus::kCancelled);
+  EXPECT_EQ(run->info.frames, 3);
 }
 
 TEST_F(RealTime, QuickEstimatorDropsNothing) {
