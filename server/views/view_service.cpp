@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/barrier.hpp"
+#include "core/cancel.hpp"
 #include "server/timing/picture_rate.hpp"
 #include "server/timing/thread_priority.hpp"
 #include "server/views/view_painter.hpp"
@@ -27,9 +28,15 @@ class AnsweredTask final : public ViewTask {
   /// Empty while a world is being opened.
   using Work = std::function<Result<std::optional<Value>>(ViewPainter&)>;
   using Done = std::function<void(Result<Value>)>;
-  AnsweredTask(Work work, Done done) : work_(std::move(work)), done_(std::move(done)) {}
+  using Abandoned = std::shared_ptr<const std::atomic<bool>>;
+  AnsweredTask(Work work, Done done, Abandoned abandoned)
+      : work_(std::move(work)), done_(std::move(done)), abandoned_(std::move(abandoned)) {}
 
   bool run(ViewPainter& painter) override {
+    if (is_cancelled(abandoned_.get())) {
+      answer(Error{ErrorCode::kCancelled, "nobody waits for the answer"});
+      return true;
+    }
     Result<std::optional<Value>> value = guarded([&] { return work_(painter); });
     if (!value) {
       answer(value.error());
@@ -50,6 +57,7 @@ class AnsweredTask final : public ViewTask {
 
   Work work_;
   Done done_;
+  Abandoned abandoned_;  ///< may be null
 };
 
 /// The stream of the tasks below, which no picture has.
@@ -225,17 +233,25 @@ ViewService::~ViewService() = default;
 void ViewService::request(std::uint64_t client,
                           int stream,
                           const PictureRequest& request,
-                          PictureDone done) {
+                          PictureDone done,
+                          std::shared_ptr<const std::atomic<bool>> abandoned) {
   const auto paint = [request](ViewPainter& painter) { return painter.paint(request); };
-  impl_->push({client, stream, std::make_unique<AnsweredTask<Picture>>(paint, std::move(done))});
+  impl_->push(
+      {client,
+       stream,
+       std::make_unique<AnsweredTask<Picture>>(paint, std::move(done), std::move(abandoned))});
 }
 
 void ViewService::probe(std::uint64_t client,
                         int stream,
                         const PixelRequest& request,
-                        PixelDone done) {
+                        PixelDone done,
+                        std::shared_ptr<const std::atomic<bool>> abandoned) {
   const auto look = [request](ViewPainter& painter) { return painter.probe(request); };
-  impl_->push({client, stream, std::make_unique<AnsweredTask<PixelValue>>(look, std::move(done))});
+  impl_->push(
+      {client,
+       stream,
+       std::make_unique<AnsweredTask<PixelValue>>(look, std::move(done), std::move(abandoned))});
 }
 
 void ViewService::forget(std::uint64_t client) {

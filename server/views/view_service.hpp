@@ -3,6 +3,7 @@
 // leaves.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -22,9 +23,19 @@ class ViewService {
   /// Queues a picture for a client's stream. A waiting request of the same (client, stream) is
   /// replaced and its `done` gets kCancelled, so that a slow machine shows newer pictures, not
   /// more. `done` is called on the service's thread.
-  void request(std::uint64_t client, int stream, const PictureRequest& request, PictureDone done);
+  /// @param abandoned  true when nobody waits for the picture any more: it is not drawn, and `done`
+  ///     gets kCancelled; may be null
+  void request(std::uint64_t client,
+               int stream,
+               const PictureRequest& request,
+               PictureDone done,
+               std::shared_ptr<const std::atomic<bool>> abandoned = nullptr);
   /// Queues a look at one pixel, likewise.
-  void probe(std::uint64_t client, int stream, const PixelRequest& request, PixelDone done);
+  void probe(std::uint64_t client,
+             int stream,
+             const PixelRequest& request,
+             PixelDone done,
+             std::shared_ptr<const std::atomic<bool>> abandoned = nullptr);
   /// Drops the waiting requests of a client without calling their `done`.
   void forget(std::uint64_t client);
   /// Closes the files of deleted runs, which otherwise keep their disk space. Does not wait.

@@ -153,9 +153,13 @@ void answer_pixel(const FrameRoutes& routes, const RouteCall& call, const Respon
   request->run_id = id;
   request->t_ns = *t_ns;
   routes.views->probe(
-      (*routes.next_client)++, 0, *request, [respond](const Result<server::PixelValue>& value) {
+      (*routes.next_client)++,
+      0,
+      *request,
+      [respond](const Result<server::PixelValue>& value) {
         respond(value ? json_response(200, pixel_json(*value)) : error_response(value.error()));
-      });
+      },
+      call.request.abandoned);
 }
 
 void answer_frame(const FrameRoutes& routes, const RouteCall& call, const Respond& respond) {
@@ -179,9 +183,11 @@ void answer_frame(const FrameRoutes& routes, const RouteCall& call, const Respon
   request.max_width_px = kFullWidth;
   request.camera = call.query_or("camera", "");
   routes.views->request(
-      (*routes.next_client)++, 0, request, [respond](const Result<Picture>& picture) {
-        respond(picture_response(picture));
-      });
+      (*routes.next_client)++,
+      0,
+      request,
+      [respond](const Result<Picture>& picture) { respond(picture_response(picture)); },
+      call.request.abandoned);
 }
 
 }  // namespace

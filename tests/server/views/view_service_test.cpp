@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <filesystem>
 #include <fstream>
@@ -169,6 +170,37 @@ TEST_F(ViewServiceTest, EndsWhileAWorldIsBeingOpened) {
     const Result<Picture> picture = answer.get_future().get();
     ASSERT_FALSE(picture.ok());
     EXPECT_EQ(picture.error().code, ErrorCode::kCancelled) << picture.error().message;
+  }
+}
+
+class AbandonedRequestTest : public testing::ManagerTest {};
+
+TEST_F(AbandonedRequestTest, IsNotWorkedOn) {
+  const auto runs = manager();
+  ViewService views(*runs);
+  for (const bool gone : {false, true}) {
+    const auto abandoned = std::make_shared<const std::atomic<bool>>(gone);
+    const ErrorCode expected = gone ? ErrorCode::kCancelled : ErrorCode::kNotFound;
+    PictureRequest picture;
+    picture.run_id = "none";
+    std::promise<ErrorCode> drawn;
+    views.request(
+        1,
+        1,
+        picture,
+        [&](const Result<Picture>& made) { drawn.set_value(made.error().code); },
+        abandoned);
+    EXPECT_EQ(drawn.get_future().get(), expected);
+    PixelRequest pixel;
+    pixel.run_id = "none";
+    std::promise<ErrorCode> seen;
+    views.probe(
+        1,
+        1,
+        pixel,
+        [&](const Result<PixelValue>& value) { seen.set_value(value.error().code); },
+        abandoned);
+    EXPECT_EQ(seen.get_future().get(), expected);
   }
 }
 
