@@ -13,6 +13,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Time for a flight to end its estimators, which would outlive it, and to complete its folder.
+constexpr double kPatience_s = 10.0;
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -33,7 +36,7 @@ Status FlightProcesses::start(const FlightJob& job) {
   words.insert(words.end(), job.options.begin(), job.options.end());
   const Result<pid_t> pid = start_program(std::move(words), job.output);
   if (!pid) return pid.error();
-  children_.push_back({*pid, job, Clock::now(), false});
+  children_.push_back({*pid, job, Clock::now(), std::nullopt});
   return {};
 }
 
@@ -43,13 +46,18 @@ Result<std::optional<EndedFlight>> FlightProcesses::ended() {
     int status = 0;
     const pid_t pid = ::waitpid(child.pid, &status, WNOHANG);
     if (pid == child.pid) {
-      EndedFlight flight{
-          child.job.id, seconds_since(child.started), child.timed_out, end_reason(status)};
+      EndedFlight flight{child.job.id,
+                         seconds_since(child.started),
+                         child.timed_out.has_value(),
+                         end_reason(status)};
       children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
       return std::optional(std::move(flight));
     }
     if (!child.timed_out && seconds_since(child.started) > child.job.timeout_s) {
-      child.timed_out = true;
+      child.timed_out = Clock::now();
+      ::kill(child.pid, SIGTERM);
+    }
+    if (child.timed_out && seconds_since(*child.timed_out) > kPatience_s) {
       ::kill(child.pid, SIGKILL);
     }
   }
@@ -66,7 +74,6 @@ void FlightProcesses::kill(const std::string& id) {
 }
 
 void FlightProcesses::stop() {
-  constexpr double kPatience_s = 10.0;
   for (const Child& child : children_) ::kill(child.pid, SIGTERM);
   const auto start = Clock::now();
   while (!children_.empty() && seconds_since(start) < kPatience_s) {

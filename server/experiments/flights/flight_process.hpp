@@ -27,7 +27,8 @@ class FlightProcesses : public FlightExecutor {
   Status start(const FlightJob& job) override;
   [[nodiscard]] std::size_t running() const override { return children_.size(); }
   [[nodiscard]] std::size_t flying() const override { return children_.size(); }
-  /// A process that has ended, or was killed because of its time limit. Never an error.
+  /// A process that has ended. At its time limit it is asked to (SIGTERM), and killed ten seconds
+  /// later. Never an error.
   [[nodiscard]] Result<std::optional<EndedFlight>> ended() override;
   /// Asks all to stop (SIGTERM), waits up to ten seconds, then kills.
   void stop() override;
@@ -39,7 +40,7 @@ class FlightProcesses : public FlightExecutor {
     pid_t pid = -1;
     FlightJob job;
     std::chrono::steady_clock::time_point started;
-    bool timed_out = false;
+    std::optional<std::chrono::steady_clock::time_point> timed_out;  ///< when it was asked to end
   };
 
   std::filesystem::path program_;
