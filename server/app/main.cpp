@@ -1,5 +1,6 @@
 // overfly: the command line.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -10,6 +11,8 @@
 
 int main(int argc, char** argv) {
   using namespace overfly::app;
+  // A parent that ignores it hands that on, and then no child can be waited for.
+  std::signal(SIGCHLD, SIG_DFL);
   CLI::App app{"Overfly: a virtual flight range for monocular visual odometry", "overfly"};
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);

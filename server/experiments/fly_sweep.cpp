@@ -6,6 +6,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -15,7 +16,6 @@
 #include "server/experiments/keys/plain_numbers.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
-#include "server/record/run_lock.hpp"
 #include "server/runs/run_memory.hpp"
 #include "server/scoring/metrics.hpp"
 #include "server/scoring/run_metrics_json.hpp"
@@ -303,6 +303,11 @@ Result<Json> sweep_record(const Sweep& sweep, const SweepPlan& plan) {
 
 }  // namespace
 
+Result<RunLock> lock_sweep(const fs::path& folder) {
+  if (Status status = FlightFiles(folder).create(); !status) return status.error();
+  return RunLock::take(folder);
+}
+
 Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options) {
   Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
@@ -332,9 +337,12 @@ Result<FlownSweep> fly_cells(const Sweep& sweep,
                              const SweepOptions& options) {
   Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(cells));
   if (!plan) return plan.error();
-  if (Status status = FlightFiles(options.folder).create(); !status) return status.error();
-  const Result<RunLock> lock = RunLock::take(options.folder);
-  if (!lock) return lock.error();
+  std::optional<RunLock> own;
+  if (options.lock == nullptr) {
+    Result<RunLock> lock = lock_sweep(options.folder);
+    if (!lock) return lock.error();
+    own.emplace(std::move(*lock));
+  }
   Result<SweepResults> results = SweepResults::open(options.folder);
   if (!results) return results.error();
   if (results->unreadable_lines() > 0 && options.warn) {

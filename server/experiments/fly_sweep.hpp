@@ -15,6 +15,7 @@
 #include "server/experiments/sweep_plan.hpp"
 #include "server/experiments/sweep_progress.hpp"
 #include "server/experiments/sweep_results.hpp"
+#include "server/record/run_lock.hpp"
 #include "server/runs/run_memory.hpp"
 
 namespace overfly::server::experiments {
@@ -23,6 +24,8 @@ struct SweepOptions {
   std::filesystem::path folder;             ///< created if absent
   std::filesystem::path program;            ///< this program, which flies single scenarios
   std::vector<std::string> flight_options;  ///< further options of `overfly run`
+  /// The folder's, from lock_sweep, by those who make several calls; null: each call takes it.
+  const RunLock* lock = nullptr;
   std::size_t jobs = 1;  ///< flights given to the executor at the same time, if the memory suffices
   /// Pictures are kept for flights that probably have the same ones: other repeats and cells, and
   /// flights of changed estimators. Only used without open_executor.
@@ -47,6 +50,10 @@ struct FlownSweep {
   bool cancelled = false;
   PictureCount pictures;  ///< of this call's flights
 };
+
+/// Creates the folder of a sweep if it is absent, and keeps other processes from working on it.
+/// Errors: as RunLock::take; kIo.
+[[nodiscard]] Result<RunLock> lock_sweep(const std::filesystem::path& folder);
 
 /// Flies every flight without a result. Results are kept in the folder: a call that was cancelled
 /// or killed is continued by the next one, and a sweep with more cells or a changed estimator flies

@@ -179,7 +179,10 @@ Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& option
   }
   const Result<Grid> grid = grid_of(sweep, *cells, *along);
   if (!grid) return grid.error();
+  const Result<RunLock> lock = lock_sweep(options.flights.folder);
+  if (!lock) return lock.error();
   SweepOptions flights = options.flights;
+  flights.lock = &*lock;
   flights.writes_progress = false;
 
   Envelope envelope{along->name, along->label, along->unit, border.estimator, {}, 0, 0};

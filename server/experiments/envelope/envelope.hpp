@@ -21,7 +21,7 @@ struct BorderSearch {
 };
 
 struct EnvelopeOptions {
-  SweepOptions flights;  ///< writes_progress is set by find_envelope
+  SweepOptions flights;  ///< lock and writes_progress are set by find_envelope
   BorderSearch border;
   /// Called with the number of cells flown so far.
   std::function<void(std::size_t)> progress;

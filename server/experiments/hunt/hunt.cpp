@@ -123,7 +123,11 @@ std::optional<std::size_t> HuntResult::flights_to_failure() const {
 }
 
 Result<HuntResult> fly_hunt(const Hunt& hunt, const HuntOptions& options) {
-  return Hunter(hunt, options).hunt();
+  const Result<RunLock> lock = lock_sweep(options.flights.folder);
+  if (!lock) return lock.error();
+  HuntOptions locked = options;
+  locked.flights.lock = &*lock;
+  return Hunter(hunt, locked).hunt();
 }
 
 std::string result_text(const HuntedFlight& flight) {

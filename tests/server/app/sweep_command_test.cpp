@@ -66,6 +66,16 @@ class SweepCommand : public CommandLine {
   }
 };
 
+TEST_F(SweepCommand, FliesForAParentThatIgnoresTheEndOfItsChildren) {
+  SKIP_WITHOUT_EGL();
+  const TemporaryFolder output;
+  std::signal(SIGCHLD, SIG_IGN);  // exec keeps it
+  RunningProgram program(arguments("s0"), output.path());
+  std::signal(SIGCHLD, SIG_DFL);
+  EXPECT_EQ(program.wait(), 0) << program.err();
+  EXPECT_EQ(lines("s0"), 6U);
+}
+
 TEST_F(SweepCommand, FliesTheCellsAndPrintsATable) {
   SKIP_WITHOUT_EGL();
   const Outcome planned = overfly_program({"sweep", file(), "--out", path("s1"), "--dry-run"});

@@ -366,6 +366,9 @@ TEST_F(FlySweep, TheEnvelopeFliesOnlyTheCellsAtTheBorder) {
   options.flights.folder = folder();
   options.flights.program = program();
   options.border.axis = "flight.course.airspeed_m_s";
+  options.progress = [&](std::size_t) {
+    EXPECT_TRUE(RunLock::held(folder())) << "also between rounds of flights";
+  };
   const auto found = find_envelope(grid, options);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_EQ(found->cells, 48U);

@@ -67,6 +67,7 @@ class FlyHunt : public ::testing::Test {
     options.flights.frame_cache = frame_cache_;
     options.flights.cancel = &cancel_;
     options.progress = [this](const HuntResult& result) {
+      EXPECT_TRUE(RunLock::held(folder())) << "also between rounds of flights";
       told_ = result.flights.size();
       if (told_ >= cancel_after_) cancel_ = true;
     };
