@@ -1,9 +1,11 @@
 #include "terrain/imagery/imagery_raster.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <list>
 
+#include "core/barrier.hpp"
 #include "terrain/place/datum_shift.hpp"
 #include "terrain/place/place_doubt.hpp"
 #include "terrain/raster/file_soundness.hpp"
@@ -346,10 +348,20 @@ Result<ImageryRaster::Levels> ImageryRaster::make_levels(const Cancelled& cancel
 
 Result<std::shared_ptr<const ImageryRaster::Levels>> ImageryRaster::coarse_levels(
     const Cancelled& cancelled) const {
-  const std::lock_guard lock(pyramid_->mutex);
+  constexpr std::chrono::milliseconds kLookEvery{20};
+  std::unique_lock lock(pyramid_->mutex);
+  while (pyramid_->making) {
+    pyramid_->made.wait_for(lock, kLookEvery);
+    if (Status status = go_on(cancelled, file_); !status) return status.error();
+  }
   std::shared_ptr<const Levels> levels = pyramid_->levels.lock();
   if (!levels) {
-    auto made = make_levels(cancelled);
+    pyramid_->making = true;
+    lock.unlock();
+    auto made = guarded([&] { return make_levels(cancelled); });
+    lock.lock();
+    pyramid_->making = false;
+    pyramid_->made.notify_all();
     if (!made) return made.error();
     levels = std::make_shared<const Levels>(std::move(*made));
     pyramid_->levels = levels;

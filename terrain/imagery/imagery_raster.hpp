@@ -1,6 +1,7 @@
 // Inside terrain only: one imagery file as RGB texels with validity at every power of two.
 #pragma once
 
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -78,6 +79,8 @@ class ImageryRaster {
     std::vector<Stored> stored;
     int first_level = 0;  ///< of `levels`: from where the stored ones are too fine
     std::mutex mutex;
+    std::condition_variable made;
+    bool making = false;  ///< some thread makes the levels
     std::weak_ptr<const Levels> levels;
   };
 

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 #include <thread>
+#include <utility>
 
 #include "terrain/world.hpp"
 #include "tests/support/support.hpp"
@@ -198,6 +200,31 @@ TEST(Tiles, OfALargeImageWithoutOverviewsCanBeCancelled) {
   const Tile tile = read(world, coarsest.level, 0, 0);
   const World another = open_images({folder.path() / "a.tif"});
   EXPECT_EQ(tile.rgb.data, read(another, coarsest.level, 0, 0).rgb.data);
+}
+
+TEST(Tiles, OfALargeImageAreNotWaitedForByWhoeverIsCancelled) {
+  TemporaryFolder folder;
+  testing::write_geotiff(folder.path() / "a.tif", textured(1345, 1111));
+  const World world = open_images({folder.path() / "a.tif"});
+  const TileId coarsest{world.tiles->grid().levels - 1, 0, 0};
+  std::promise<void> begun;
+  std::promise<void> let_go;
+  auto first = std::async(std::launch::async, [&] {
+    bool waited = false;
+    return world.tiles->tile(coarsest, [&] {
+      if (!std::exchange(waited, true)) {
+        begun.set_value();
+        let_go.get_future().wait();
+      }
+      return false;
+    });
+  });
+  begun.get_future().wait();
+  const auto second = world.tiles->tile(coarsest, [] { return true; });
+  let_go.set_value();
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().code, ErrorCode::kCancelled);
+  EXPECT_TRUE(first.get().ok());
 }
 
 TEST(Tiles, OfRealImageryAreAreaAveragesWithoutShift) {
