@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <thread>
 
 #include "core/barrier.hpp"
@@ -150,6 +151,17 @@ Result<int> CacheBuilder::count_damaged(const std::vector<CacheHeader::Chunks>& 
   return damaged.load();
 }
 
+int CacheBuilder::start_threads(const Work& work, std::vector<std::thread>& threads) {
+  const unsigned most = std::max(1U, std::thread::hardware_concurrency());
+  threads.reserve(most);
+  try {
+    while (threads.size() < most) threads.emplace_back([&] { take_jobs(work); });
+  } catch (const std::system_error&) {
+    // No more threads are available: continue with those that started.
+  }
+  return static_cast<int>(threads.size());
+}
+
 void CacheBuilder::take_jobs(const Work& work) {
   for (std::size_t i = next_++; i < jobs_.size() && !stop_; i = next_++) {
     const Status done = guarded([&] { return work(jobs_[i]); });
@@ -160,14 +172,16 @@ void CacheBuilder::take_jobs(const Work& work) {
     stop_ = true;
   }
   const std::lock_guard lock(mutex_);
-  --working_;
+  ++finished_;
   changed_.notify_all();
 }
 
-Status CacheBuilder::report_until_done(const std::string& doing, const BuildProgress& progress) {
+Status CacheBuilder::report_until_done(int threads,
+                                       const std::string& doing,
+                                       const BuildProgress& progress) {
   bool cancelled = false;
   std::unique_lock lock(mutex_);
-  while (working_ > 0) {
+  while (finished_ < threads) {
     changed_.wait_for(lock, std::chrono::milliseconds(100));
     if (!progress || cancelled) continue;
     lock.unlock();
@@ -192,10 +206,11 @@ Status CacheBuilder::run(const Work& work,
   done_ = 0;
   stop_ = false;
   error_.reset();
-  working_ = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  finished_ = 0;
   std::vector<std::thread> threads;
-  for (int i = working_; i > 0; --i) threads.emplace_back([&] { take_jobs(work); });
-  Status reported = report_until_done(doing, progress);
+  const int started = start_threads(work, threads);
+  if (started == 0) return Error{ErrorCode::kInternal, "no thread can be started"};
+  Status reported = report_until_done(started, doing, progress);
   for (std::thread& thread : threads) thread.join();
   if (error_) return *error_;
   return reported;

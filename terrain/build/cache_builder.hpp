@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "terrain/build_progress.hpp"
@@ -45,7 +46,9 @@ class CacheBuilder {
   using Work = std::function<Status(const Job&)>;
   /// Runs all jobs on all processors; the first error stops it.
   Status run(const Work& work, const std::string& doing, const BuildProgress& progress);
-  Status report_until_done(const std::string& doing, const BuildProgress& progress);
+  /// @return how many were started
+  int start_threads(const Work& work, std::vector<std::thread>& threads);
+  Status report_until_done(int threads, const std::string& doing, const BuildProgress& progress);
   void take_jobs(const Work& work);
   Status make_one(const Job& job);
   Result<std::vector<Bytes>> tiles(const Job& job, bool& any) const;
@@ -67,7 +70,7 @@ class CacheBuilder {
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
   std::condition_variable changed_;
-  int working_ = 0;
+  int finished_ = 0;  ///< threads
   std::optional<Error> error_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "core/barrier.hpp"
@@ -39,8 +40,13 @@ class Fetching {
     }
     std::vector<std::thread> threads;
     threads.reserve(static_cast<std::size_t>(options_.parallel));
-    for (int i = 0; i < options_.parallel; ++i) threads.emplace_back([this] { work(); });
-    watch();
+    try {
+      for (int i = 0; i < options_.parallel; ++i) threads.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {
+      // No more threads are available: continue with those that started.
+    }
+    if (threads.empty()) return Error{ErrorCode::kInternal, "no thread can be started"};
+    watch(threads.size());
     for (std::thread& thread : threads) thread.join();
     report.fetched = fetched_;
     report.reused = reused_;
@@ -91,10 +97,10 @@ class Fetching {
   }
 
   /// Reports progress until all threads are done.
-  void watch() {
+  void watch(std::size_t threads) {
     std::unique_lock lock(mutex_);
     constexpr auto kTell = std::chrono::milliseconds(200);
-    while (idle_threads_ < options_.parallel) {
+    while (idle_threads_ < threads) {
       changed_.wait_for(lock, kTell);
       if (!progress_) continue;
       const double share = jobs_.empty() ? 1.0 : static_cast<double>(finished_) / jobs_.size();
@@ -122,7 +128,7 @@ class Fetching {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t finished_ = 0;
-  int idle_threads_ = 0;
+  std::size_t idle_threads_ = 0;
   std::optional<Error> error_;
 };
 

@@ -1,5 +1,5 @@
 // Threads that the system refuses: whichever of a run's threads it is, the run ends by itself and
-// the program goes on.
+// the program goes on; so does the build of a world.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,14 @@
 
 #include <atomic>
 #include <cerrno>
+#include <filesystem>
 
 #include "server/record/run_folder.hpp"
 #include "server/record/run_info_file.hpp"
 #include "server/record/run_lock.hpp"
 #include "server/run/run_options.hpp"
+#include "terrain/build_world.hpp"
+#include "terrain/world.hpp"
 #include "tests/server/support/manager_fixture.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -88,6 +91,27 @@ TEST_F(ThreadFailure, RunEndsByItselfWhicheverThreadIsRefused) {
   }
   EXPECT_GE(failed, 2) << "an estimator's";
   EXPECT_GE(completed, 2) << "one that others can do without";
+}
+
+TEST_F(ThreadFailure, AWorldIsBuiltByTheThreadsThatThereAre) {
+  int completed = 0;
+  for (int n = 1; n <= 3; ++n) {
+    const TemporaryFolder folder;
+    const std::filesystem::path world = folder.path() / "world";
+    std::filesystem::copy(
+        testing::small_world().parent_path(), world, std::filesystem::copy_options::recursive);
+    const auto spec = terrain::read_world_manifest(world / testing::small_world().filename());
+    ASSERT_TRUE(spec.ok()) << spec.error().message;
+    refused_thread = n;
+    const auto built = terrain::build_world(*spec);
+    refused_thread = 0;
+    if (built.ok()) {
+      ++completed;
+    } else {
+      EXPECT_THAT(built.error().message, HasSubstr("no thread can be started"));
+    }
+  }
+  EXPECT_GE(completed, 2);
 }
 
 TEST_F(ThreadFailure, ManagerThatCannotStartItsThreadsSaysSo) {
