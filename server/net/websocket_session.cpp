@@ -138,11 +138,12 @@ class WebSocketSession final : public ViewerPort,
   template <typename Step>
   static void post_step(const std::weak_ptr<WebSocketSession>& weak,
                         ServerContext& context,
-                        Step step) {
+                        const Step& step) {
     context.deliver([&] {
       const auto self = weak.lock();
       if (!self) return;
-      asio::post(self->ws_.get_executor(), [weak, step = std::move(step)]() mutable {
+      // A copy: without memory for the post, the step is needed for the next try.
+      asio::post(self->ws_.get_executor(), [weak, step] {
         const auto session = weak.lock();
         if (session) session->attempt([&] { step(*session); });
       });
@@ -254,9 +255,8 @@ void WebSocketSession::open(std::function<Timeline(server::RunManager&)> opened)
           timeline = Error{ErrorCode::kInternal, std::string("a run cannot be opened: ") + what};
           context->log("error", timeline.error().message);
         });
-    post_step(weak, *context, [timeline](WebSocketSession& session) mutable {
-      session.run_opened(std::move(timeline));
-    });
+    post_step(
+        weak, *context, [timeline](WebSocketSession& session) { session.run_opened(timeline); });
   });
 }
 
