@@ -7,6 +7,7 @@
 
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "middleware/ros1/line_log.hpp"
 #include "middleware/ros1/master_watch.hpp"
 #include "middleware/ros1/node.hpp"
@@ -88,7 +89,10 @@ class RosTopicListener final : public TopicListener {
       try {
         ros::SubscribeOptions options;
         options.initByFullCallbackType<const Event&>(
-            topic, kWaiting, [this, &topic](const Event& event) { pass_on(topic, event); });
+            topic, kWaiting, [this, &topic](const Event& event) {
+              // ROS has no exception barrier; without memory the message is dropped.
+              (void)contained([&] { pass_on(topic, event); }, [](const char*) {});
+            });
         options.transport_hints = ros::TransportHints().tcpNoDelay();
         subscribers_.push_back(handle_.subscribe(options));
       } catch (const std::exception& failure) {

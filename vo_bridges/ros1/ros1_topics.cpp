@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/barrier.hpp"
 #include "middleware/ros1/messages.hpp"
 #include "middleware/ros1/sensor_messages.hpp"
 #include "vo_bridges/ros1/own_topics.hpp"
@@ -134,10 +135,14 @@ Status Topics::advertise_sensors() {
 template <typename M, typename Handle>
 Status Topics::subscribe(const std::string& topic, Handle handle, ros::Subscriber& subscriber) {
   using Pointer = typename M::ConstPtr;
+  // ROS has no exception barrier; without memory the message is dropped.
+  const auto contained_handle = [handle = std::move(handle)](const Pointer& message) {
+    (void)contained([&] { handle(message); }, [](const char*) {});
+  };
   try {
     subscriber = handle_.subscribe<M>(topic,
                                       static_cast<std::uint32_t>(options_.queue_size),
-                                      boost::function<void(const Pointer&)>(std::move(handle)),
+                                      boost::function<void(const Pointer&)>(contained_handle),
                                       ros::VoidConstPtr(),
                                       ros::TransportHints().tcpNoDelay());
   } catch (const std::exception& failure) {
