@@ -1,6 +1,7 @@
 // A damaged cache is reported or repaired, and never gives another picture.
 #include "terrain/cache/block_codec.hpp"
 #include "terrain/cache/chunk_file.hpp"
+#include "terrain/height_errors.hpp"
 #include "tests/terrain/cache/built_world.hpp"
 
 namespace overfly::terrain {
@@ -17,19 +18,24 @@ void expect_error_or_same(const WorldSpec& spec,
     return;
   }
   bool noticed = false;
+  const auto expect_named = [&](const Error& error) {
+    noticed = true;
+    EXPECT_EQ(error.code, ErrorCode::kIo);
+    EXPECT_THAT(error.message, HasSubstr(damaged.string()));
+    EXPECT_THAT(error.message, HasSubstr("`overfly world build`"));
+  };
+  const HeightErrors errors;
   const TileGrid& grid = world->tiles->grid();
   // Beyond the north-western corner, where the first block of heights answers.
   (void)world->tiles->world_from_map(grid.left_x_m - grid.width_m, grid.top_y_m + grid.height_m);
+  if (const Status heights = errors.status(); !heights) expect_named(heights.error());
   for (const auto& [id, expected] : right) {
     const auto tile = world->tiles->tile(id);
     if (tile) {
       EXPECT_TRUE(tile->rgb.data == expected.rgb.data) << damaged;
       continue;
     }
-    noticed = true;
-    EXPECT_EQ(tile.error().code, ErrorCode::kIo);
-    EXPECT_THAT(tile.error().message, HasSubstr(damaged.string()));
-    EXPECT_THAT(tile.error().message, HasSubstr("`overfly world build`"));
+    expect_named(tile.error());
   }
   EXPECT_TRUE(noticed) << damaged;
 }
