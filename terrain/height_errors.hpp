@@ -24,7 +24,7 @@ class HeightErrors {
 
  private:
   HeightErrors* outer_;  ///< the one of this thread before
-  std::optional<Error> first_;
+  mutable std::optional<Error> first_;  ///< set by add(), also of a const variable
 };
 
 }  // namespace overfly::terrain
