@@ -1,10 +1,10 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
 import { errorText, fieldErrorsOf } from '../connection/rest_error';
-import type { JsonObject, Run } from '../protocol/rest_types';
+import type { JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
-import { draftOf, overridesBetween } from './scenario/draft';
+import { draftOf, kChangedMeanwhile, overridesBetween, sameJson } from './scenario/draft';
 import { documentErrors } from './scenario/schema_check';
 import type { Session } from './session';
 import type { Store } from './state';
@@ -60,9 +60,44 @@ export class Catalogue {
       return;
     }
     this.store.change('lists');
+    this.leaveDeleted(state.scenarios);
     const flyable = state.scenarios.filter(({ error }) => error === null);
     const first = flyable.find(({ name }) => name === kPreferred) ?? flyable[0];
-    if (state.scenarioName === null && first !== undefined) await this.selectScenario(first.name);
+    if (state.scenarioName !== null) await this.readAgain(state.scenarioName);
+    else if (first !== undefined) await this.selectScenario(first.name);
+  }
+
+  /** Somebody may have deleted the scenario that the launcher shows. */
+  private leaveDeleted(scenarios: readonly ScenarioEntry[]): void {
+    const { state } = this.store;
+    const { scenarioName, repeatedRun } = state;
+    if (scenarioName === null || repeatedRun !== null) return;
+    if (scenarios.some(({ name }) => name === scenarioName)) return;
+    this.notices.error(`The scenario ${scenarioName} is no longer on the server.`);
+    Object.assign(state, { scenarioName: null, scenarioDocument: null });
+    this.forgetChanges();
+    this.store.change('launch');
+  }
+
+  /** Another page, or another browser, may have saved the scenario that the launcher shows. */
+  private async readAgain(name: string): Promise<void> {
+    const { state } = this.store;
+    const { choice } = this;
+    if (state.repeatedRun !== null || state.scenarioDocument === null) return;
+    let document: JsonObject;
+    try {
+      document = await this.rest.scenario(name);
+    } catch {
+      return; // The next reading of the list repeats it.
+    }
+    if (this.choice !== choice || state.scenarioName !== name) return;
+    const changed = !sameJson(document, state.scenarioDocument);
+    if (!changed && !state.scenarioChanged) return;
+    state.scenarioChanged = changed && state.scenarioEdits.size > 0;
+    state.launchErrors = state.launchErrors.filter((error) => error !== kChangedMeanwhile);
+    if (state.scenarioChanged) state.launchErrors.push(kChangedMeanwhile);
+    else state.scenarioDocument = document;
+    this.store.change('launch');
   }
 
   async selectScenario(name: string): Promise<void> {
@@ -119,6 +154,7 @@ export class Catalogue {
   private forgetChanges(): void {
     const { state } = this.store;
     state.scenarioEdits = new Map();
+    state.scenarioChanged = false;
     state.launchErrors = [];
     state.scenarioEditor.check = 'none';
   }
@@ -178,6 +214,7 @@ export class Catalogue {
     if (scenarioDocument === null) return null;
     const { document, errors } = draftOf(scenarioDocument, scenarioEdits);
     if (scenarioSchema !== null) errors.push(...documentErrors(scenarioSchema, document));
+    if (state.scenarioChanged) errors.push(kChangedMeanwhile);
     state.launchErrors = errors;
     this.store.change('launch');
     return errors.length > 0 ? null : document;

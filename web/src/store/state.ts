@@ -62,6 +62,8 @@ export class State {
   scenarioSchema: JsonObject | null = null;
   /** Changed sections of the scenario as JSON: text by section name; '' = removed. */
   scenarioEdits = new Map<string, string>();
+  /** The server has another document now than the one that is edited. */
+  scenarioChanged = false;
   scenarioEditor: ScenarioEditorState = initialScenarioEditor();
   /** What is known to be wrong with the changed scenario. */
   launchErrors: FieldError[] = [];

@@ -6,6 +6,13 @@ import { isObject } from './schema_node';
 /** Texts of edited sections by name; an empty text removes the section. */
 export type Edits = ReadonlyMap<string, string>;
 
+/** The edits are not those of the document that the server has now. */
+export const kChangedMeanwhile: FieldError = {
+  field: '',
+  message:
+    'The scenario was changed on the server meanwhile. Take your changes back, or save them under another name.',
+};
+
 /** The changed document; sections that are not JSON stay as they were, and are errors. */
 export function draftOf(
   base: JsonObject,

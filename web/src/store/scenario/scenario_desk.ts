@@ -8,7 +8,7 @@ import type { FieldSpec } from '../launch_form';
 import { withFieldText } from '../launch_form';
 import type { Notices } from '../notices';
 import type { Store } from '../state';
-import { draftOf, editsWith, editsWithText, valueIn, withValue } from './draft';
+import { draftOf, editsWith, editsWithText, kChangedMeanwhile, valueIn, withValue } from './draft';
 import type { Edits } from './draft';
 import { newEstimator, withEstimatorTypes, withType } from './estimator_schema';
 import type { ScenarioEditorState } from './scenario_editor';
@@ -135,6 +135,7 @@ export class ScenarioDesk {
     this.asking.abort();
     this.changed();
     if (edits.size > 0) this.later(() => void this.check(edits), kPause_ms);
+    else if (state.scenarioChanged) void this.scenarios.readScenarios();
   }
 
   // ---- checks ----------------------------------------------------------------------------------
@@ -148,6 +149,7 @@ export class ScenarioDesk {
     const current = () => state.scenarioEdits === edits && !asking.signal.aborted;
     if (!current() || state.scenarioDocument === null) return;
     const { document, errors } = draftOf(state.scenarioDocument, edits);
+    if (state.scenarioChanged) errors.push(kChangedMeanwhile);
     const schema = await this.readSchema().catch(() => null);
     if (!current()) return;
     if (schema !== null) errors.push(...documentErrors(schema, document));
@@ -195,6 +197,8 @@ export class ScenarioDesk {
     } else if (errors.length > 0) {
       state.launchErrors = errors;
       this.refuse('The scenario has errors.');
+    } else if (state.scenarioChanged && name === state.scenarioName) {
+      this.refuse(kChangedMeanwhile.message);
     } else if (entry !== undefined && !replace) {
       this.ask(name);
     } else {
@@ -210,6 +214,11 @@ export class ScenarioDesk {
     this.changed();
     try {
       await this.rest.saveScenario(name, document, replace);
+      const { state } = this.store;
+      // It is no change by somebody else.
+      if (state.scenarioName === name && state.repeatedRun === null) {
+        state.scenarioDocument = document;
+      }
       await this.scenarios.readScenarios();
       // What was typed meanwhile is not in it, and stays.
       const whole = edits() === sent;

@@ -5,6 +5,7 @@ import { RestError } from '../../../src/connection/rest_error';
 import type { FieldError } from '../../../src/protocol/field_errors';
 import type { JsonObject } from '../../../src/protocol/rest_types';
 import { Notices } from '../../../src/store/notices';
+import { kChangedMeanwhile } from '../../../src/store/scenario/draft';
 import { ScenarioDesk } from '../../../src/store/scenario/scenario_desk';
 import { Store } from '../../../src/store/state';
 
@@ -27,6 +28,7 @@ function desk() {
   const asked: { document: JsonObject; answer: (errors: FieldError[] | Error) => void }[] = [];
   const saved: [string, JsonObject, boolean][] = [];
   const chosen: string[] = [];
+  const readings: (JsonObject | null)[] = [];
   const rest = {
     scenarioSchema: () => Promise.resolve(JSON.parse(schemaText) as JsonObject),
     checkScenario: (document: JsonObject, signal: AbortSignal) =>
@@ -50,7 +52,10 @@ function desk() {
     deleteScenario: () => Promise.resolve(),
   };
   const scenarios = {
-    readScenarios: () => Promise.resolve(),
+    readScenarios: () => {
+      readings.push(store.state.scenarioDocument);
+      return Promise.resolve();
+    },
     selectScenario: (name: string) => {
       chosen.push(name);
       return Promise.resolve();
@@ -63,7 +68,7 @@ function desk() {
   };
   const { state } = store;
   const settle = () => new Promise((done) => setTimeout(done, 0));
-  return { subject, store, state, pause, asked, saved, chosen, settle };
+  return { subject, store, state, pause, asked, saved, chosen, readings, settle };
 }
 
 describe('changes of the scenario', () => {
@@ -123,6 +128,18 @@ describe('changes of the scenario', () => {
     expect(state.scenarioEditor.check).toBe('none');
   });
 
+  it('are refused of a scenario that was changed meanwhile, until all are taken back', async () => {
+    const { subject, state, pause, readings } = desk();
+    subject.setValue('seed', 2);
+    state.scenarioChanged = true;
+    subject.setValue('seed', 3);
+    await pause();
+    expect(state.launchErrors).toEqual([kChangedMeanwhile]);
+    expect(readings).toEqual([]);
+    subject.reset(['seed']);
+    expect(readings).toHaveLength(1);
+  });
+
   it('add estimators, change their type and remove them', () => {
     const { subject, state } = desk();
     const estimators = () => JSON.parse(state.scenarioEdits.get('estimators') ?? '[]') as unknown;
@@ -165,6 +182,26 @@ describe('saving a scenario', () => {
     expect(chosen).toEqual([]);
     expect(state.scenarioEdits.get('title')).toBe('"Second"');
     expect(state.notices.at(-1)?.text).toMatch(/without the changes that were made meanwhile/u);
+  });
+
+  it('goes on with what it has saved under the same name', async () => {
+    const { subject, saved, state, readings } = desk();
+    state.scenarioName = 'mine';
+    subject.setValue('title', 'First');
+    const saving = subject.save('mine', true);
+    subject.setValue('title', 'Second');
+    await saving;
+    expect(readings).toEqual([saved[0]?.[1]]);
+    expect(state.scenarioDocument?.['title']).toBe('First');
+  });
+
+  it('does not replace one that was changed meanwhile', async () => {
+    const { subject, saved, state } = desk();
+    Object.assign(state, { scenarioName: 'mine', scenarioChanged: true });
+    await subject.save('mine', true);
+    expect(state.scenarioEditor.saveError).toBe(kChangedMeanwhile.message);
+    await subject.save('small', false);
+    expect(saved.map(([name]) => name)).toEqual(['small']);
   });
 
   it('shows nothing of a scenario that was deleted', async () => {
