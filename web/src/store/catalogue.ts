@@ -185,15 +185,9 @@ export class Catalogue {
 
   /** The changed scenario, for a study; null, with its errors shown, if it has any. */
   asked(): StudyScenario | null {
-    return this.checkedDocument() === null ? null : this.chosen();
-  }
-
-  /** The changed scenario, for a study; null before it is read. */
-  chosen(): StudyScenario | null {
-    const { repeatedRun, scenarioDocument, scenarioEdits, scenarioName, scenarios } =
-      this.store.state;
-    if (scenarioDocument === null) return null;
-    const { document } = draftOf(scenarioDocument, scenarioEdits);
+    const { repeatedRun, scenarioDocument, scenarioName, scenarios } = this.store.state;
+    const document = this.checkedDocument();
+    if (scenarioDocument === null || document === null) return null;
     const overrides = overridesBetween(scenarioDocument, document);
     const entry = scenarios?.find(({ name }) => name === scenarioName);
     const scenario = scenarioName ?? '';

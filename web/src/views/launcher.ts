@@ -7,6 +7,7 @@ import { draftOf } from '../store/scenario/draft';
 import type { Topic } from '../store/state';
 import { h, rebuild, setAttribute, setText } from './dom';
 import { makePanel } from './panel';
+import { prepareStudy } from './studies/prepare_study';
 import type { Context, View } from './view';
 
 const kEditLabel = 'Edit scenario';
@@ -105,18 +106,13 @@ export class Launcher implements View {
 
   /** Prepares a study of the scenario with the form's values. */
   private studyButton(kind: 'predict' | 'hunt', label: string, title: string): HTMLElement {
-    const { catalogue, studies } = this.context;
-    const prepare = () => {
-      const source = catalogue.asked();
-      if (source !== null) void studies.prepare(kind, source);
-    };
     const role = `open-${kind}`;
     const button = h(
       'button',
       { class: 'secondary', type: 'button', 'data-role': role, title },
       label,
     );
-    button.addEventListener('click', prepare);
+    button.addEventListener('click', () => prepareStudy(this.context, kind));
     return button;
   }
 

@@ -103,7 +103,7 @@ describe('Catalogue', () => {
     });
     await subject.readScenarios();
     store.state.scenarioEdits = new Map([['estimators', '']]);
-    expect(subject.chosen()).toMatchObject({ document: { seed: 1, pacing: 'lockstep' } });
+    expect(subject.asked()).toMatchObject({ document: { seed: 1, pacing: 'lockstep' } });
     await subject.launch();
     expect(sent).toEqual([{ document: { seed: 1, pacing: 'lockstep' } }]);
   });

@@ -55,7 +55,7 @@ export class StudyDesk {
   }
 
   /** Prepares a study of a scenario. @param source  null = as the server has it */
-  async prepare(kind: 'predict' | 'hunt', source: StudyScenario | null): Promise<void> {
+  async prepare(kind: 'predict' | 'hunt', source: StudyScenario): Promise<void> {
     await this.open();
     await this.form.openScenario(kind, source);
   }

@@ -82,11 +82,8 @@ export class StudyForm {
     this.changed();
   }
 
-  /** @param source  null = the launcher's scenario as it is on the server */
-  async openScenario(kind: 'predict' | 'hunt', source: StudyScenario | null): Promise<void> {
-    const { scenarioName, scenarios } = this.store.state;
-    const scenario = scenarioName ?? scenarios?.[0]?.name ?? '';
-    const form = this.begin(kind, source ?? plainScenario(scenario));
+  async openScenario(kind: 'predict' | 'hunt', source: StudyScenario): Promise<void> {
+    const form = this.begin(kind, source);
     await this.readDocument(form);
   }
 

@@ -8,6 +8,7 @@ import { kThemes, kThemeTitles } from '../../store/themes';
 import { kTimeCommands } from '../plots/time_commands';
 import { kShortcuts } from './shortcuts';
 import { saveReport } from '../runs/report_button';
+import { prepareStudy } from '../studies/prepare_study';
 import type { Context } from '../view';
 
 const kMostListed = 500;
@@ -182,7 +183,8 @@ function reportCommands(context: Context): Command[] {
   ];
 }
 
-function studyCommands({ catalogue, store, studies }: Context): Command[] {
+function studyCommands(context: Context): Command[] {
+  const { store, studies } = context;
   const group = 'Study';
   const { run } = store.state;
   const failed = run !== null && failedEstimators(run).length > 0;
@@ -203,14 +205,14 @@ function studyCommands({ catalogue, store, studies }: Context): Command[] {
       group,
       title: 'Predict where the scenario is risky',
       words: 'risk before flight map',
-      run: () => void studies.prepare('predict', catalogue.chosen()),
+      run: () => prepareStudy(context, 'predict'),
     },
     {
       id: 'hunt',
       group,
       title: 'Hunt the worst flight of the scenario',
       words: 'search failure limits',
-      run: () => void studies.prepare('hunt', catalogue.chosen()),
+      run: () => prepareStudy(context, 'hunt'),
     },
   ];
 }

@@ -6,6 +6,7 @@ import { studyDetail } from '../../store/studies/study_words';
 import { h, rebuild, setAttribute, setText, setTextOf } from '../dom';
 import { KeyedList } from '../keyed_list';
 import type { Context, View } from '../view';
+import { prepareStudy } from './prepare_study';
 import { StudyFormView } from './study_form_view';
 import { StudyHead } from './study_head';
 import { resultParts } from './study_results';
@@ -20,7 +21,7 @@ export class StudyPageView implements View {
   private readonly message = h('div', { class: 'log-message', 'data-role': 'study-message' });
 
   constructor(private readonly context: Context) {
-    const { studies, catalogue } = context;
+    const { studies } = context;
     this.head = new StudyHead(context);
     this.form = new StudyFormView(context);
     const close = h(
@@ -28,12 +29,8 @@ export class StudyPageView implements View {
       { class: 'icon-button', 'aria-label': 'Close', onclick: () => studies.close() },
       '×',
     );
-    const start = (role: string, label: string, title: string, action: () => Promise<void>) =>
-      h(
-        'button',
-        { class: 'secondary', 'data-role': role, title, onclick: () => void action() },
-        label,
-      );
+    const start = (role: string, label: string, title: string, action: () => void) =>
+      h('button', { class: 'secondary', 'data-role': role, title, onclick: action }, label);
     this.root = h(
       'div',
       { class: 'sweep-page study-page', role: 'dialog', 'aria-label': 'Studies' },
@@ -44,14 +41,17 @@ export class StudyPageView implements View {
         h(
           'div',
           { class: 'study-new' },
-          start('new-explain', 'Explain a run', 'Why an estimator failed', () =>
-            studies.explain(null),
+          start(
+            'new-explain',
+            'Explain a run',
+            'Why an estimator failed',
+            () => void studies.explain(null),
           ),
           start('new-predict', 'Predict risk', 'Where an estimator is likely to be lost', () =>
-            studies.prepare('predict', catalogue.chosen()),
+            prepareStudy(context, 'predict'),
           ),
           start('new-hunt', 'Hunt the worst flight', 'Within limits of some fields', () =>
-            studies.prepare('hunt', catalogue.chosen()),
+            prepareStudy(context, 'hunt'),
           ),
         ),
         this.list,

@@ -3,7 +3,7 @@ import { RestClient } from '../../../src/connection/rest_client';
 import { StudyClient } from '../../../src/connection/study_client';
 import type { JsonObject } from '../../../src/protocol/rest_types';
 import { Store } from '../../../src/store/state';
-import { failedEstimators, StudyForm } from '../../../src/store/studies/study_form';
+import { failedEstimators, plainScenario, StudyForm } from '../../../src/store/studies/study_form';
 import { scoredRun } from '../../support/studies';
 
 const kCourse: JsonObject = {
@@ -73,7 +73,7 @@ describe('StudyForm', () => {
     store.state.runs = [failed];
     form.openExplain(failed);
     expect(form.canStart(state())).toBe(false);
-    await form.openScenario('predict', null);
+    await form.openScenario('predict', plainScenario('course'));
     expect(form.canStart(state())).toBe(true);
   });
 
@@ -123,7 +123,7 @@ describe('StudyForm', () => {
   });
 
   it('hunts within the limits of fields that the scenario has', async () => {
-    await form.openScenario('hunt', null);
+    await form.openScenario('hunt', plainScenario('course'));
     expect(state().axes.map(({ path }) => path)).toEqual([
       'flight.course.height_agl_m',
       'flight.course.airspeed_m_s',
@@ -161,7 +161,7 @@ describe('StudyForm', () => {
   });
 
   it('names fields that are no numbers before it asks', async () => {
-    await form.openScenario('hunt', null);
+    await form.openScenario('hunt', plainScenario('course'));
     form.setAxis(0, { from: 'low', to: '' });
     form.setNumber('flights', 'many');
     expect(await form.start()).toBe(false);
@@ -192,7 +192,7 @@ describe('StudyForm', () => {
   });
 
   it('says that a scenario is gone', async () => {
-    await form.openScenario('hunt', null);
+    await form.openScenario('hunt', plainScenario('course'));
     await form.chooseScenario('gone');
     expect(state().errors).toEqual([{ field: '', message: 'no such scenario' }]);
     expect(state().document).toBeNull();

@@ -1,0 +1,24 @@
+import { expect, it } from 'vitest';
+
+import type { Context } from '../../../src/views/view';
+import { prepareStudy } from '../../../src/views/studies/prepare_study';
+import { catalogue, reading } from '../../support/catalogue_bench';
+
+it('prepares no study of a scenario with errors, and shows them', async () => {
+  const { store, subject } = catalogue(reading);
+  await subject.readScenarios();
+  const done: unknown[] = [];
+  const context = {
+    catalogue: subject,
+    layouts: { show: (panel: string) => done.push(panel) },
+    notices: { error: () => done.push('notice') },
+    studies: { prepare: (kind: string, source: unknown) => done.push([kind, source]) },
+  } as unknown as Context;
+  store.state.scenarioEdits = new Map([['pacing', '{']]);
+  prepareStudy(context, 'predict');
+  expect(done).toEqual(['launcher', 'notice']);
+  expect(store.state.launchErrors.map(({ field }) => field)).toEqual(['pacing']);
+  store.state.scenarioEdits = new Map([['seed', '2']]);
+  prepareStudy(context, 'hunt');
+  expect(done[2]).toMatchObject(['hunt', { scenario: 'course', overrides: { seed: 2 } }]);
+});
