@@ -78,8 +78,9 @@ export function logOverrides(
           entry['name'] === name,
       ) ?? { name, type: name },
   );
-  // The scenario's own flight may be shorter.
+  // The scenario's own flight may be shorter, and begin later.
   if (document['duration_s'] !== undefined) overrides['duration_s'] = kLongest_s;
+  if (document['start_s'] !== undefined) overrides['start_s'] = 0;
   return { overrides, errors };
 }
 

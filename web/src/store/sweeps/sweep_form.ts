@@ -66,7 +66,8 @@ export class SweepForm {
       form.jobs = form.files.jobs.default;
       const sought = this.store.state.sweepPage.sweeps?.find((one) => one.name === name)?.envelope;
       if (sought) form.border = { axis: sought.axis, estimator: sought.estimator };
-      this.load(form, await this.client.document(name));
+      const document = await this.client.document(name);
+      if (this.form === form) this.load(form, document);
     } catch (error) {
       form.errors = fieldErrorsOf(error);
     }

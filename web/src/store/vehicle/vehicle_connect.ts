@@ -118,8 +118,9 @@ export function connectOverrides(
     }
     overrides['flight'] = { mavlink };
     overrides['title'] = `Vehicle at ${link}`;
-    // The scenario's own flight may be shorter.
+    // The scenario's own flight may be shorter, and begin later.
     if (document['duration_s'] !== undefined) overrides['duration_s'] = kLongest_s;
+    if (document['start_s'] !== undefined) overrides['start_s'] = 0;
     return { overrides, errors };
   }
   for (const [name, [value, usual]] of Object.entries(wanted)) {

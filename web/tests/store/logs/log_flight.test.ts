@@ -29,7 +29,11 @@ describe('a log as a flight', () => {
       geoid_separation_m: '-33',
       estimators: ['perfect'],
     };
-    const { overrides } = logOverrides(flight, '/a.bin', { ...document, duration_s: 5 });
+    const { overrides } = logOverrides(flight, '/a.bin', {
+      ...document,
+      duration_s: 5,
+      start_s: 3,
+    });
     expect(overrides).toEqual({
       title: 'Log a.bin',
       flight: {
@@ -45,6 +49,7 @@ describe('a log as a flight', () => {
       },
       estimators: [{ name: 'perfect', type: 'perfect' }],
       duration_s: 86400,
+      start_s: 0,
     });
   });
 

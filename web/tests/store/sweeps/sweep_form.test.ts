@@ -166,6 +166,15 @@ describe('SweepForm', () => {
     expect(started).not.toHaveBeenCalled();
   });
 
+  it('leaves the check of a form that was opened later', async () => {
+    const slow = form.openSweep('night');
+    const later = form.openSweep('day');
+    await Promise.all([later, slow]);
+    await settle();
+    expect(asked.filter(({ call }) => call === 'POST api/sweep-check')).toHaveLength(1);
+    expect(shown()).toMatchObject({ changes: 'day', checking: false, cost: kCost });
+  });
+
   it('extends a sweep under its name', async () => {
     await form.openSweep('night');
     await settle();

@@ -9,7 +9,7 @@ import {
 } from '../../../src/store/vehicle/vehicle_connect';
 
 const form = (changes = {}) => ({ ...initialConnect().form, ...changes });
-const kCourse = { flight: { course: {} }, duration_s: 100 } as JsonObject;
+const kCourse = { flight: { course: {} }, duration_s: 100, start_s: 5 } as JsonObject;
 
 describe('connecting to a vehicle', () => {
   it('puts addresses together and takes them apart', () => {
@@ -32,6 +32,7 @@ describe('connecting to a vehicle', () => {
       flight: { mavlink: { link: 'tcp:127.0.0.1:5760', read_only: true } },
       title: 'Vehicle at tcp:127.0.0.1:5760',
       duration_s: 86_400,
+      start_s: 0,
     });
     const more = form({ readOnly: false, system: '3', geoid_separation_m: '-33.5' });
     expect(connectOverrides(more, { flight: { course: {} } }).overrides['flight']).toEqual({
