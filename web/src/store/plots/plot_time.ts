@@ -20,6 +20,13 @@ export class PlotTime {
     return this.store.state.plotWindow?.span_s ?? null;
   }
 
+  /** The same part by the time of the main run. */
+  get partOfRun_s(): Span | null {
+    const { part_s } = this;
+    const offset_s = this.store.state.offset_ns / 1e9;
+    return part_s === null ? null : [part_s[0] - offset_s, part_s[1] - offset_s];
+  }
+
   get shown_s(): Span {
     return this.part_s ?? this.whole_s;
   }

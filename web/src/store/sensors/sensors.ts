@@ -46,7 +46,10 @@ export class Sensors {
     private readonly timers: SensorTimers,
   ) {}
 
-  /** Reads the samples of a run and keeps them up to date. @param span_s  null = the whole flight */
+  /**
+   * Reads the samples of a run and keeps them up to date.
+   * @param span_s  by the run's time, of which a part may lie before its beginning; null = the whole flight
+   */
   show(run: string, span_s: Span | null): void {
     const { wanted } = this;
     const sameRun = wanted?.run === run;
@@ -127,7 +130,7 @@ function newestOf(sensors: readonly SensorCurves[]): number {
 function widened(span_s: Span | null): Span | null {
   if (span_s === null) return null;
   const margin_s = kMargin * (span_s[1] - span_s[0]);
-  return [Math.max(0, span_s[0] - margin_s), span_s[1] + margin_s];
+  return [Math.max(0, span_s[0] - margin_s), Math.max(0, span_s[1] + margin_s)];
 }
 
 function sameSpan(a: Span | null, b: Span | null): boolean {

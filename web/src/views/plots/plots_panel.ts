@@ -154,7 +154,7 @@ export class PlotsPanel implements View {
   private draw(): void {
     const { state } = this.context.store;
     if (this.group === 'sensors' && state.runId !== null) {
-      this.context.sensors.show(state.runId, this.context.plotTime.part_s);
+      this.context.sensors.show(state.runId, this.context.plotTime.partOfRun_s);
     } else {
       this.hideSensors();
     }

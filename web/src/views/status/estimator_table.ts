@@ -26,12 +26,12 @@ export class EstimatorTable {
       h('tbody', {}, ...rows.flatMap((row, i) => bodyRows(row, colours[i] ?? ''))),
     ]);
     const lines = saidBy(state.data.log, kMostLines);
-    rebuild(this.said, JSON.stringify(lines), () =>
+    rebuild(this.said, JSON.stringify([lines, state.offset_ns]), () =>
       lines.map(({ t_ns, level, source, text }) =>
         h(
           'li',
           { 'data-level': level },
-          h('time', {}, formatTime(t_ns)),
+          h('time', {}, formatTime(t_ns + state.offset_ns)),
           h('b', { style: `color:${colourOf(state, source)}` }, source),
           h('span', {}, text),
         ),

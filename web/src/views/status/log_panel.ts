@@ -1,4 +1,4 @@
-// The run's log, newest last.
+// The run's log by the time of the clock, newest last.
 import { formatTime } from '../../store/format';
 import type { RunData } from '../../store/run_data';
 import type { Topic } from '../../store/state';
@@ -16,6 +16,7 @@ export class LogPanel implements View {
   private readonly list = h('ol', { class: 'log' });
   private data: RunData | null = null;
   private generation = 0;
+  private offset_ns = 0;
   private shown = 0;
   /** The rows of the run are still on their way. */
   private reading = false;
@@ -37,16 +38,18 @@ export class LogPanel implements View {
   update(changed: ReadonlySet<Topic>): void {
     const read = this.reading && (changed.has('rows') || changed.has('playback'));
     if (!changed.has('log') && !changed.has('run') && !read) return;
-    const { data, main } = this.context.store.state;
-    if (data !== this.data || data.generation !== this.generation) {
+    const { data, main, offset_ns } = this.context.store.state;
+    const moved = offset_ns !== this.offset_ns;
+    if (data !== this.data || data.generation !== this.generation || moved) {
       this.data = data;
       this.generation = data.generation;
+      this.offset_ns = offset_ns;
       this.shown = 0;
       this.list.replaceChildren();
     }
     const first = Math.max(this.shown, data.log.length - kMostLines);
     for (const { t_ns, level, text, source } of data.log.slice(first)) {
-      const time = h('time', {}, formatTime(t_ns));
+      const time = h('time', {}, formatTime(t_ns + offset_ns));
       const said = source === '' ? text : `${source}: ${text}`;
       this.list.append(h('li', { 'data-level': level }, time, h('span', {}, said)));
     }

@@ -29,6 +29,16 @@ describe('PlotTime', () => {
     expect([...viewing.store.take()]).toEqual(['plotTime']);
   });
 
+  it('gives the part by the time of a run that begins later on the clock', () => {
+    const { time, viewing } = zoomedIn();
+    viewing.session.setOffset('r1', 18e9);
+    expect(time.part_s?.[0]).toBeCloseTo(20);
+    expect(time.partOfRun_s?.[0]).toBeCloseTo(2);
+    expect(time.partOfRun_s?.[1]).toBeCloseTo(12);
+    time.showWhole();
+    expect(time.partOfRun_s).toBeNull();
+  });
+
   it('moves inside the flight; all of it does not move', () => {
     const { time } = zoomedIn();
     time.pan(15);

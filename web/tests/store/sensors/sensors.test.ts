@@ -60,6 +60,12 @@ describe('Sensors', () => {
     expect(asked[1]?.url).toBe('api/runs/r1/sensors?points=1200&from_s=9.900000&to_s=11.100000');
   });
 
+  it('asks for no time before the run, of which the clock may show some', async () => {
+    sensors.show('r1', [-5, -2]);
+    await settle();
+    expect(asked[0]?.url).toBe('api/runs/r1/sensors?points=1200&from_s=0.000000&to_s=0.000000');
+  });
+
   it('reads again while the flight goes on, more rarely if that takes long', async () => {
     viewing.socket.receive({ type: 'run', run: sampleRun({ status: 'running' }) });
     sensors.show('r1', null);
