@@ -1,5 +1,6 @@
 // The positions of a log as points on a plane, for a map.
 import type { LogSeries } from '../../protocol/log_types';
+import { metresPerDegree } from '../metres_per_degree';
 
 /** East and north of the track's first point [m]. */
 export interface Track {
@@ -8,23 +9,6 @@ export interface Track {
   north_m: number[];
   /** null: the log does not say where it was. */
   origin: { lat_deg: number; lon_deg: number } | null;
-}
-
-/** Of WGS84 [m]; the radii of curvature follow from them. */
-const kSemiMajor_m = 6378137;
-const kEccentricitySquared = 6.69437999014e-3;
-const kRadPerDeg = Math.PI / 180;
-
-/** Metres per degree of latitude and of longitude at a latitude. */
-export function metresPerDegree(lat_deg: number): { north: number; east: number } {
-  const sine = Math.sin(lat_deg * kRadPerDeg);
-  const w = 1 - kEccentricitySquared * sine * sine;
-  const meridian_m = (kSemiMajor_m * (1 - kEccentricitySquared)) / Math.pow(w, 1.5);
-  const normal_m = kSemiMajor_m / Math.sqrt(w);
-  return {
-    north: meridian_m * kRadPerDeg,
-    east: normal_m * Math.cos(lat_deg * kRadPerDeg) * kRadPerDeg,
-  };
 }
 
 export function trackOf(series: LogSeries): Track {

@@ -3,7 +3,7 @@ import type { RestClient } from '../../connection/rest_client';
 import type { WorldExtent } from '../../protocol/log_types';
 import type { Store } from '../state';
 import type { Track } from './log_track';
-import { metresPerDegree } from './log_track';
+import { metresPerDegree } from '../metres_per_degree';
 
 /** Of a world's imagery, east and north of a track's origin [m]. */
 export interface Outline {

@@ -1,7 +1,8 @@
 // Scenarios that fly a mission: made of another scenario, a world and the mission.
 import type { World } from '../../protocol/mission_types';
 import type { Json, JsonObject } from '../../protocol/rest_types';
-import { metresPerDegree, movedTo } from './mission_edit';
+import { metresPerDegree } from '../metres_per_degree';
+import { movedTo } from './mission_edit';
 import type { Mission } from './mission_item';
 import { isObject, planFromMission } from './plan_file';
 
@@ -93,11 +94,10 @@ export function homeOf(document: JsonObject, world: World): [number, number] | n
   }
   if (!isObject(home)) return null;
   const { origin } = world;
-  const scale = metresPerDegree(origin.lat_deg);
-  return [
-    origin.lat_deg + number(home['north_m'], 0) / scale.north,
-    origin.lon_deg + number(home['east_m'], 0) / scale.east,
-  ];
+  const lat_deg =
+    origin.lat_deg + number(home['north_m'], 0) / metresPerDegree(origin.lat_deg).north;
+  const lon_deg = origin.lon_deg + number(home['east_m'], 0) / metresPerDegree(lat_deg).east;
+  return [lat_deg, lon_deg];
 }
 
 /** The mission where the scenario flies it. */

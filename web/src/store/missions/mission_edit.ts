@@ -1,4 +1,5 @@
 // Edits of a mission: each returns a new one and leaves the old one as it was.
+import { metresPerDegree } from '../metres_per_degree';
 import type { Home, Mission, MissionItem, SimpleItem } from './mission_item';
 import {
   hasHeight,
@@ -10,20 +11,11 @@ import {
   withParam,
 } from './mission_item';
 
-const kMetresPerDegree = 111_195;
 const kUsualHeight_m = 300;
 const kTakeOffHeight_m = 60;
 const kUsualRadius_m = 120;
 /** 1e-8 deg is 1 mm. */
 const kDegreeStep = 1e8;
-
-/** Metres of a degree of latitude and of longitude; on a sphere, for moves on the screen. */
-export function metresPerDegree(lat_deg: number): { north: number; east: number } {
-  return {
-    north: kMetresPerDegree,
-    east: kMetresPerDegree * Math.max(0.01, Math.cos((lat_deg * Math.PI) / 180)),
-  };
-}
 
 export function roundDegrees(value_deg: number): number {
   return Math.round(value_deg * kDegreeStep) / kDegreeStep;

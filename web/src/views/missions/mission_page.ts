@@ -1,12 +1,7 @@
 // The page of missions: a map, the items, what the mission will be like, and its files.
+import { metresPerDegree } from '../../store/metres_per_degree';
 import { formatNumber } from '../../store/format';
-import {
-  metresPerDegree,
-  neighbour,
-  nudged,
-  placed,
-  withHome,
-} from '../../store/missions/mission_edit';
+import { neighbour, nudged, placed, withHome } from '../../store/missions/mission_edit';
 import { itemOfNumber, kCommand } from '../../store/missions/mission_item';
 import type { MissionPage } from '../../store/missions/mission_page';
 import type { Topic } from '../../store/state';

@@ -1,9 +1,9 @@
 import { describe, expect, it } from 'vitest';
+import { metresPerDegree } from '../../../src/store/metres_per_degree';
 import { History } from '../../../src/store/missions/history';
 import {
   indexAfter,
   inserted,
-  metresPerDegree,
   movedTo,
   neighbour,
   newItem,
