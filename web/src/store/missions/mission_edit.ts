@@ -1,5 +1,6 @@
 // Edits of a mission: each returns a new one and leaves the old one as it was.
 import { metresPerDegree } from '../metres_per_degree';
+import { movedRaw } from './complex_item';
 import type { Home, Mission, MissionItem, SimpleItem } from './mission_item';
 import {
   hasHeight,
@@ -123,13 +124,16 @@ export function movedTo(mission: Mission, place: readonly [number, number]): Mis
   const to = metresPerDegree(place[0]);
   const north_deg = place[0] - mission.home.lat_deg;
   // Distances in metres stay, also at another latitude.
-  const east = (lon_deg: number) =>
-    place[1] + ((lon_deg - mission.home.lon_deg) * from.east) / to.east;
+  const move = (lat_deg: number, lon_deg: number): [number, number] => [
+    roundDegrees(lat_deg + north_deg),
+    roundDegrees(place[1] + ((lon_deg - mission.home.lon_deg) * from.east) / to.east),
+  ];
   const items = mission.items.map((item): MissionItem => {
+    if (item.kind === 'complex') return { ...item, raw: movedRaw(item.raw, move) };
     const at = placeOf(item);
-    if (at === null || item.kind !== 'simple') return item;
-    const moved = withParam(item, 4, roundDegrees(at[0] + north_deg));
-    return { ...withParam(moved, 5, roundDegrees(east(at[1]))), id: item.id };
+    if (at === null) return item;
+    const [lat_deg, lon_deg] = move(...at);
+    return { ...withParam(withParam(item, 4, lat_deg), 5, lon_deg), id: item.id };
   });
   return {
     ...mission,
