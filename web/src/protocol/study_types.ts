@@ -91,6 +91,8 @@ export interface Explanation {
   sentences: string[];
   flights: Reflight[];
   untried: { cause: string; reason: string }[];
+  /** Disturbances that every flight kept, because other causes were to be tried. */
+  not_changed: string[];
   /** What causes are called. */
   words: Record<string, string>;
 }

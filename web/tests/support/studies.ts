@@ -80,6 +80,7 @@ export function explanation(fields: Partial<Explanation> = {}): Explanation {
     sentences: [],
     flights: [],
     untried: [],
+    not_changed: [],
     words: { blur: 'the blur of the images', noise: 'the noise of the sensor' },
     ...fields,
   };

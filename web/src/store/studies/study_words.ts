@@ -58,20 +58,35 @@ export interface CauseRow {
 export function causeRows(explanation: Explanation): CauseRow[] {
   const { necessary, sufficient, together, pair, margin, words, flights } = explanation;
   const named = [...new Set([...necessary, ...sufficient, ...together, ...pair])];
-  const alone = flights
-    .filter(({ changes, error }) => error === null && changes.length === 1)
-    .map(({ changes }) => changes[0]?.cause ?? '');
-  const causes = [...new Set([...named, ...alone])];
+  const changed = flights.filter(({ changes, error }) => error === null && changes.length === 1);
+  const causes = [...new Set([...named, ...changed.flatMap(causesOf)])];
+  const failed = changed.filter(({ survived }) => survived === false).flatMap(causesOf);
   return causes.map((cause) => ({
     words: plainWords(words[cause] ?? cause),
-    necessary: necessary.includes(cause) ? 'yes' : alone.includes(cause) ? 'no' : '',
-    sufficient: sufficient.includes(cause)
-      ? 'yes'
-      : necessary.includes(cause) || sufficient.length > 0
-        ? 'no'
-        : '',
+    necessary: necessary.includes(cause) ? 'yes' : failed.includes(cause) ? 'no' : '',
+    sufficient: sufficient.includes(cause) ? 'yes' : survivedOnly(explanation, cause) ? 'no' : '',
     margin: margin?.cause === cause ? marginText(margin) : '',
   }));
+}
+
+/** As the server names the flight without all of them. */
+const kCalm = 'without any disturbance';
+
+/** Whether the estimator survived with all of one cause and nothing of the others. */
+function survivedOnly(explanation: Explanation, cause: string): boolean {
+  const { flights, necessary, not_changed } = explanation;
+  if (not_changed.length > 0) return false;
+  const calm = flights.filter(({ name }) => name === kCalm).flatMap(causesOf);
+  const others = [...calm, ...necessary].filter((other) => other !== cause);
+  return flights.some((flight) => {
+    const taken = causesOf(flight);
+    const isOnly = !taken.includes(cause) && others.every((other) => taken.includes(other));
+    return isOnly && flight.survived === true && flight.seed === flights[0]?.seed;
+  });
+}
+
+function causesOf({ changes }: Reflight): string[] {
+  return changes.map(({ cause }) => cause);
 }
 
 /** "the blur of the images" -> "Blur of the images" */

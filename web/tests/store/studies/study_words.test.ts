@@ -39,13 +39,38 @@ describe('study words', () => {
       {
         words: 'Blur of the images',
         necessary: 'yes',
-        sufficient: 'no',
+        sufficient: '',
         margin: 'survives 12.5 % of it, fails at 25 %',
       },
-      { words: 'Noise of the sensor', necessary: 'no', sufficient: '', margin: '' },
+      // Without the blur it is the only one.
+      { words: 'Noise of the sensor', necessary: 'no', sufficient: 'no', margin: '' },
     ]);
     const alone = explanation({ sufficient: ['noise'] });
     expect(causeRows(alone)[0]).toMatchObject({ necessary: '', sufficient: 'yes' });
+    const broken = reflight({
+      survived: null,
+      error: 'exit 1',
+      changes: [{ cause: 'b', share: 0 }],
+    });
+    const unknown = reflight({ survived: null, changes: [{ cause: 'c', share: 0 }] });
+    expect(causeRows(explanation({ flights: [broken, unknown] }))).toMatchObject([
+      { words: 'C', necessary: '', sufficient: '' },
+    ]);
+  });
+
+  it('calls a cause insufficient only where a flight survived with nothing but it', () => {
+    const flight = (survived: boolean, ...causes: string[]) =>
+      reflight({ survived, changes: causes.map((cause) => ({ cause, share: 0 })) });
+    const calm = { ...flight(true, 'blur', 'noise', 'wind'), name: 'without any disturbance' };
+    const flights = [flight(false), calm, flight(true, 'blur'), flight(true, 'noise')];
+    const found = explanation({ necessary: ['blur', 'noise'], flights });
+    const sufficient = (one: typeof found) => causeRows(one).map((row) => row.sufficient);
+    expect(sufficient(found)).toEqual(['', '']);
+    const kept = [...flights, flight(true, 'noise', 'wind')];
+    expect(sufficient({ ...found, flights: kept })).toEqual(['no', '']);
+    expect(sufficient({ ...found, flights: kept, not_changed: ['dust'] })).toEqual(['', '']);
+    const otherSeed = [...flights, { ...flight(true, 'noise', 'wind'), seed: 2 }];
+    expect(sufficient({ ...found, flights: otherSeed })).toEqual(['', '']);
   });
 
   it('draws a flight from its start to the failure', () => {
