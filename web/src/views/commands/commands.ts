@@ -3,6 +3,7 @@ import type { Command } from '../../store/palette';
 import { failedEstimators } from '../../store/studies/study_form';
 import { kPanelNames, kPanels } from '../../store/layouts/panel_names';
 import { kReadyLayouts } from '../../store/layouts/ready_layouts';
+import { withResults } from '../../store/runs/counted_results';
 import { kSceneParts } from '../../store/scene/scene_look';
 import { kThemes, kThemeTitles } from '../../store/themes';
 import { kTimeCommands } from '../plots/time_commands';
@@ -186,7 +187,7 @@ function reportCommands(context: Context): Command[] {
 function studyCommands(context: Context): Command[] {
   const { store, studies } = context;
   const group = 'Study';
-  const { run } = store.state;
+  const run = withResults(store.state.main);
   const failed = run !== null && failedEstimators(run).length > 0;
   return [
     ...(failed

@@ -17,6 +17,7 @@ import {
 } from '../../store/errors/error_table';
 import { formatNumber, kNothing } from '../../store/format';
 import type { Run } from '../../protocol/rest_types';
+import { withResults } from '../../store/runs/counted_results';
 import type { State, Topic } from '../../store/state';
 import type { Track } from '../../store/tracks';
 import { tracksOf } from '../../store/tracks';
@@ -166,7 +167,7 @@ export class ErrorPanel implements View {
       outcomes.map(({ text, good }, i) => {
         if (good === null) return h('td', { class: 'pending', title: text }, text);
         const track = tracks[i];
-        const run = track?.run.run ?? null;
+        const run = withResults(track?.run ?? null);
         const unexplained = good || run === null || track?.by !== undefined;
         return h(
           'td',

@@ -1,4 +1,5 @@
 // Status of the estimators as a panel of its own.
+import { withResults } from '../../store/runs/counted_results';
 import type { Topic } from '../../store/state';
 import { failedEstimators } from '../../store/studies/study_form';
 import { h } from '../dom';
@@ -6,6 +7,8 @@ import { EstimatorTable } from './estimator_table';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
 import type { Context, View } from '../view';
+
+const kShown: readonly Topic[] = ['run', 'metrics', 'estimators', 'log'];
 
 export class StatusPanel implements View {
   readonly root: HTMLElement;
@@ -18,7 +21,7 @@ export class StatusPanel implements View {
       hidden: true,
       'data-role': 'explain-status',
       title: 'Find out why an estimator failed: fly it again with one cause changed at a time',
-      onclick: () => void this.context.studies.explain(this.context.store.state.run),
+      onclick: () => void this.context.studies.explain(withResults(this.context.store.state.main)),
     },
     'Explain',
   );
@@ -31,12 +34,13 @@ export class StatusPanel implements View {
   }
 
   update(changed: ReadonlySet<Topic>): void {
-    if (!changed.has('run') && !changed.has('estimators') && !changed.has('log')) return;
+    if (!kShown.some((topic) => changed.has(topic))) return;
     const { state } = this.context.store;
     const none = (state.run?.estimators.length ?? 0) === 0;
     this.table.root.hidden = none;
     this.panel.showEmpty(none ? 'The status of estimators appears here.' : null);
     this.table.draw(state);
-    this.explain.hidden = state.run === null || failedEstimators(state.run).length === 0;
+    const run = withResults(state.main);
+    this.explain.hidden = run === null || failedEstimators(run).length === 0;
   }
 }

@@ -1,7 +1,8 @@
 import { expect, it } from 'vitest';
 import type { RunStatus } from '../../../src/protocol/rest_types';
-import { countedResults, notCounted } from '../../../src/store/runs/counted_results';
+import { countedResults, notCounted, withResults } from '../../../src/store/runs/counted_results';
 import { repeatsOf } from '../../../src/store/runs/repeats';
+import { failedEstimators } from '../../../src/store/studies/study_form';
 import { sampleRun } from '../../support/samples';
 
 const run = (status: RunStatus, outcome: string, position_rmse_m: number | null) =>
@@ -20,6 +21,17 @@ const runs = [
 
 it('a flight that did not reach its end has no results that count', () => {
   expect(runs.map((one) => countedResults(one).length)).toEqual([1, 0, 0, 0, 0]);
+});
+
+it('a run of a sweep, which no list has, has the outcomes of its score', () => {
+  const metrics = { estimators: { x: { outcome: 'LOST' }, y: { outcome: 'COMPLETED' } } };
+  const ofSweep = withResults({ run: sampleRun(), metrics });
+  expect(ofSweep === null ? [] : failedEstimators(ofSweep)).toEqual(['x']);
+  expect(withResults({ run: sampleRun(), metrics: null })?.results).toEqual([]);
+  const listed = run('completed', 'RESET', 4);
+  expect(withResults({ run: listed, metrics })).toBe(listed);
+  expect(withResults({ run: null, metrics })).toBeNull();
+  expect(withResults(null)).toBeNull();
 });
 
 it('repeated flights are the completed ones, and the others are counted apart', () => {
