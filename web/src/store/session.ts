@@ -15,7 +15,7 @@ import { RunPictures } from './pictures/run_pictures';
 import { clockOf } from './playback/run_playback';
 import { shownAlignment } from './state';
 import type { State, Store } from './state';
-import { WatchedRun } from './watched_run';
+import { kMostOffset_ns, WatchedRun } from './watched_run';
 
 const kNothingSubscribed = '[]';
 
@@ -153,8 +153,9 @@ export class Session implements StreamListener {
     this.changedRuns();
   }
 
-  /** Moves a run on the clock. */
-  setOffset(id: string, offset_ns: number): void {
+  /** Moves a run on the clock. @param wanted_ns  at most a day is taken */
+  setOffset(id: string, wanted_ns: number): void {
+    const offset_ns = Math.min(kMostOffset_ns, Math.max(-kMostOffset_ns, wanted_ns));
     const watched = this.state.watchedRun(id);
     if (watched === undefined || watched.offset_ns === offset_ns) return;
     watched.offset_ns = offset_ns;

@@ -34,6 +34,9 @@ export interface AlignedEstimates {
   estimates: Map<string, EstimateRows>;
 }
 
+/** How far the server moves a run on the clock, in both directions: a day. */
+export const kMostOffset_ns = 86_400e9;
+
 export class WatchedRun {
   /** null until the list or the stream has sent it. */
   run: Run | null = null;

@@ -9,6 +9,7 @@ import { kMostRuns } from '../session';
 import type { TrackColour } from '../track_colours';
 import { isTrackColour } from '../track_colours';
 import { indexOfLetter, letterOf } from '../tracks';
+import { kMostOffset_ns } from '../watched_run';
 
 export interface ShownRun {
   id: string;
@@ -173,7 +174,12 @@ function readPanels(text: string | null, problems: string[]): LayoutNode | null 
 function shownRun(text: string, problems: string[]): ShownRun {
   const [, id = text, offset] = /^(.*)@(-?[0-9.]+)$/.exec(text) ?? [];
   if (offset === undefined) return { id, offset_ns: 0 };
-  return { id, offset_ns: readPart('run', text, () => nanoseconds(offset), problems) ?? 0 };
+  return { id, offset_ns: readPart('run', text, () => offsetOf(offset), problems) ?? 0 };
+}
+
+function offsetOf(text: string): number | null {
+  const offset_ns = nanoseconds(text);
+  return offset_ns !== null && Math.abs(offset_ns) <= kMostOffset_ns ? offset_ns : null;
 }
 
 /** null for what is no time, or too long to be exact. */

@@ -5,6 +5,7 @@ import type { State } from '../../store/state';
 import type { Track } from '../../store/tracks';
 import { runLetter, tracksOf } from '../../store/tracks';
 import type { WatchedRun } from '../../store/watched_run';
+import { kMostOffset_ns } from '../../store/watched_run';
 import { trackColour } from '../colours';
 import { h, rebuild } from '../dom';
 import { icon } from '../icons';
@@ -65,6 +66,8 @@ export class ShownRuns {
     const offset = h('input', {
       type: 'number',
       step: 0.1,
+      min: -kMostOffset_ns / 1e9,
+      max: kMostOffset_ns / 1e9,
       value: offsetText(offset_ns),
       'aria-label': `Offset of run ${letter} in seconds`,
       title: 'Time of the clock at which this run begins [s]',

@@ -84,6 +84,15 @@ describe('permalink', () => {
     expect(read(formatPermalink(link))).toEqual(link);
   });
 
+  it('leaves out an offset that the server does not take', () => {
+    const { runs, problems } = parsePermalink('#run=r1@86400&run=r2@-86400.1');
+    expect(runs.map(({ id, offset_ns }) => [id, offset_ns])).toEqual([
+      ['r1', 86_400e9],
+      ['r2', 0],
+    ]);
+    expect(problems).toHaveLength(1);
+  });
+
   it('has times to the nanosecond: a frame is not one before', () => {
     const choices = usualChoices();
     choices.clock = { range: { begin_ns: 32_258_065, end_ns: 64_516_129 }, speed: 1, loop: false };

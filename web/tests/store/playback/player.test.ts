@@ -41,6 +41,14 @@ describe('Player', () => {
     expect(viewing.player.seekTarget_ns(5e9)).toBe(5e9);
   });
 
+  it('moves a run on the clock as far as the server takes it', () => {
+    viewing.watch();
+    viewing.session.setOffset('r1', 1e20);
+    expect(viewing.socket.last()).toMatchObject({ run: 'r1', offset_ns: 86_400e9 });
+    viewing.session.setOffset('r1', -86_401e9);
+    expect(viewing.store.state.offset_ns).toBe(-86_400e9);
+  });
+
   it('goes to the end of the clock, not of the main run', () => {
     viewing.watch();
     viewing.session.addRun('r2');
