@@ -226,8 +226,10 @@ export class Session implements StreamListener {
   }
 
   onMessage(message: ServerMessage): void {
-    if (message.type === 'error') this.pictures.refuse(message);
-    else if (message.type === 'playback') this.onPlayback(message);
+    if (message.type === 'error') {
+      this.pictures.refuse(message);
+      this.forgetSpeed();
+    } else if (message.type === 'playback') this.onPlayback(message);
     else if (message.type === 'pictures') this.onPictures(message);
     else if (message.type === 'run') this.onRun(message.run);
     else if ('run' in message) this.onRunData(message);
@@ -344,10 +346,17 @@ export class Session implements StreamListener {
     const clock = clockOf(message);
     state.clock = clock;
     for (const watched of state.watched) watched.instant = message.runs[watched.id] ?? null;
-    if (clock.speed === state.wantedSpeed) state.wantedSpeed = null;
+    this.forgetSpeed();
     this.store.change('playback');
     if (clock.live) this.livePlace_ns = null;
     this.begin();
+  }
+
+  /** It was confirmed, refused, or changed again by the server, as it is at the end of a live flight. */
+  private forgetSpeed(): void {
+    const { state } = this;
+    const confirmed = state.clock?.speed === state.wantedSpeed;
+    if (confirmed || this.client?.settled === true) state.wantedSpeed = null;
   }
 
   /** Once all runs are there. */

@@ -95,6 +95,25 @@ describe('Player', () => {
     expect(viewing.socket.last().type).toBe('range');
   });
 
+  it('forgets a speed that the server has taken back or refused', () => {
+    viewing.watch();
+    const { socket } = viewing;
+    const answer = (type: 'ok' | 'error') => {
+      const { request } = socket.last();
+      socket.receive({ type, request, code: 'invalid_argument', message: 'no such speed' });
+    };
+    viewing.player.changeSpeed(1);
+    socket.receive(playbackMessage({ live: true, flying: true }));
+    expect(viewing.store.state.wantedSpeed).toBe(2);
+    answer('ok');
+    socket.receive(playbackMessage({ live: true, flying: true }));
+    expect(viewing.store.state.wantedSpeed).toBeNull();
+    viewing.player.changeSpeed(1);
+    expect(socket.last()).toMatchObject({ type: 'speed', value: 2 });
+    answer('error');
+    expect(viewing.store.state.wantedSpeed).toBeNull();
+  });
+
   it('walks through the speeds without waiting for answers and stops at the limits', () => {
     viewing.watch();
     viewing.player.changeSpeed(1);
