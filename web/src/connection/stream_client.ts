@@ -140,10 +140,11 @@ export class StreamClient {
   /**
    * Watches this run in addition to the others, or again from the rows that are missing.
    * @param offset_ns  time of the clock at the run's beginning
+   * @param resume  the rows that are not sent again
    */
-  watch(run: string, offset_ns: number): void {
+  watch(run: string, offset_ns: number, resume = this.options.listener.resume(run)): void {
     this.runs.set(run, offset_ns);
-    this.sendWatch(run, offset_ns);
+    this.sendWatch(run, offset_ns, resume);
   }
 
   /** Moves a watched run on the clock. */
@@ -197,10 +198,10 @@ export class StreamClient {
     this.socket.send(JSON.stringify({ ...message, request: this.request }));
   }
 
-  private sendWatch(run: string, offset_ns: number): void {
+  private sendWatch(run: string, offset_ns: number, resume: Resume): void {
     if (this.greeted) this.opening.set(this.request + 1, run);
     const offset = offset_ns === 0 ? {} : { offset_ns };
-    this.send({ type: 'watch', run, ...offset, resume: this.options.listener.resume(run) });
+    this.send({ type: 'watch', run, ...offset, resume });
   }
 
   private onData(data: string | ArrayBuffer): void {
@@ -278,7 +279,7 @@ export class StreamClient {
     this.options.listener.onState({ status: 'open', server: message.server });
     if (Object.keys(this.view).length > 0) this.send({ type: 'view', ...this.view });
     if (this.runs.size === 0) return;
-    for (const [run, offset_ns] of this.runs) this.sendWatch(run, offset_ns);
+    for (const [run, offset_ns] of this.runs) this.watch(run, offset_ns);
     if (this.subscriptions.length > 0) {
       this.send({ type: 'subscribe', pictures: this.subscriptions, acknowledge: true });
     }

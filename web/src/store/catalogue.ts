@@ -15,10 +15,22 @@ const kPreferred = 'course';
 const kPollActive_ms = 1500;
 const kPollIdle_ms = 8000;
 
+/** So many lists that know more than the stream are no coincidence. */
+const kSilentLists = 2;
+
+interface Silence {
+  /** The last that the stream said. */
+  said: string;
+  /** Lists since then. */
+  lists: number;
+}
+
 export class Catalogue {
   private polling = false;
   /** Ids of the runs that were over in the last list; the stream changes those of the state. */
   private over: ReadonlySet<string> = new Set();
+  /** Watched runs of which the last list knew more than the stream had said. */
+  private silences = new Map<string, Silence>();
   private reading: Promise<void> = Promise.resolve();
   /** Number of the latest choice in the launcher: a scenario, or a run that is flown again. */
   private choice = 0;
@@ -267,7 +279,9 @@ export class Catalogue {
       this.announceEnded(now, listed);
       state.runs = withNewer(listed, before, now);
       state.listError = null;
-      for (const run of listed) this.takeListed(run);
+      const { silences } = this;
+      this.silences = new Map();
+      for (const run of listed) this.takeListed(run, silences.get(run.id));
       this.announceDeleted(before, listed);
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
@@ -276,15 +290,32 @@ export class Catalogue {
     this.store.change('lists');
   }
 
-  /** What the stream does not send about a watched run: its results, tags and note. */
-  private takeListed(listed: Run): void {
+  /**
+   * What the stream does not send about a watched run: its results, tags and note, and that another
+   * process flies it on.
+   */
+  private takeListed(listed: Run, silence: Silence | undefined): void {
     const watched = this.store.state.watchedRun(listed.id);
     if (watched === undefined) return;
+    this.readFurther(listed, watched.run ?? listed, silence);
     const { results, tags, note } = listed;
     const run = watched.run === null ? listed : { ...watched.run, results, tags, note };
     if (JSON.stringify(run) === JSON.stringify(watched.run)) return;
     watched.run = run;
     this.store.change('run');
+  }
+
+  /** The server reads a run of another process only when it is asked; its own ones are streamed. */
+  private readFurther(listed: Run, streamed: Run, silence: Silence | undefined): void {
+    const over = !isActive(listed);
+    if (!isActive(streamed) || (!over && listed.frames <= streamed.frames)) return;
+    const said = JSON.stringify([streamed.status, streamed.frames, over]);
+    const lists = silence?.said === said ? silence.lists + 1 : 1;
+    this.silences.set(listed.id, { said, lists });
+    // All of a long run is not sent twice because the connection is slow.
+    if (over ? lists === kSilentLists : lists % kSilentLists === 0) {
+      this.session.readAgain(listed.id, over);
+    }
   }
 
   /** Says which known runs ended; those that the viewer stopped are not announced. */
@@ -324,7 +355,8 @@ export class Catalogue {
     const active =
       this.store.state.runs?.some((run) => isActive(run) || !this.over.has(run.id)) === true;
     const failing = this.store.state.listError !== null;
-    this.later(() => void this.poll(), active || failing ? kPollActive_ms : kPollIdle_ms);
+    const soon = active || failing || this.silences.size > 0;
+    this.later(() => void this.poll(), soon ? kPollActive_ms : kPollIdle_ms);
   }
 }
 

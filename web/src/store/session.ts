@@ -15,12 +15,9 @@ import { RunPictures } from './pictures/run_pictures';
 import { clockOf } from './playback/run_playback';
 import { shownAlignment } from './state';
 import type { State, Store } from './state';
-import { kMostOffset_ns, WatchedRun } from './watched_run';
+import { kMostOffset_ns, kMostRuns, WatchedRun } from './watched_run';
 
 const kNothingSubscribed = '[]';
-
-/** Limit of the server. */
-export const kMostRuns = 16;
 
 export class Session implements StreamListener {
   private client: StreamClient | null = null;
@@ -161,6 +158,12 @@ export class Session implements StreamListener {
     watched.offset_ns = offset_ns;
     this.client?.move(id, offset_ns);
     this.store.change('run', 'rows', 'playback');
+  }
+
+  /** Reads a run again that another process writes. @param whole  with the rows that have come */
+  readAgain(id: string, whole: boolean): void {
+    const offset_ns = this.state.watchedRun(id)?.offset_ns;
+    if (offset_ns !== undefined) this.client?.watch(id, offset_ns, whole ? {} : this.resume(id));
   }
 
   /** Shows or hides a track in the plots. @param name  of the estimator; '' = the truth */

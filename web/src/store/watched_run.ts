@@ -34,6 +34,9 @@ export interface AlignedEstimates {
   estimates: Map<string, EstimateRows>;
 }
 
+/** How many runs the server sends at a time. */
+export const kMostRuns = 16;
+
 /** How far the server moves a run on the clock, in both directions: a day. */
 export const kMostOffset_ns = 86_400e9;
 

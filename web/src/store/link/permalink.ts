@@ -5,11 +5,10 @@ import type { LayoutNode } from '../layouts/layout_tree';
 import { LayoutError } from '../layouts/layout_tree';
 import type { LinkChoices } from './link_choices';
 import { nameOf, readChoices, readPart, secondsText, writeChoices } from './link_choices';
-import { kMostRuns } from '../session';
 import type { TrackColour } from '../track_colours';
 import { isTrackColour } from '../track_colours';
 import { indexOfLetter, letterOf } from '../tracks';
-import { kMostOffset_ns } from '../watched_run';
+import { kMostOffset_ns, kMostRuns } from '../watched_run';
 
 export interface ShownRun {
   id: string;
