@@ -5,6 +5,7 @@ import type { JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
 import { draftOf, kChangedMeanwhile, overridesBetween, sameJson } from './scenario/draft';
+import { KeptEdits } from './scenario/kept_edits';
 import { documentErrors } from './scenario/schema_check';
 import type { Session } from './session';
 import type { Store } from './state';
@@ -34,6 +35,7 @@ export class Catalogue {
   private reading: Promise<void> = Promise.resolve();
   /** Number of the latest choice in the launcher: a scenario, or a run that is flown again. */
   private choice = 0;
+  private readonly kept = new KeptEdits();
   /** Number of the latest choice of a scenario. */
   private selection = 0;
 
@@ -86,8 +88,8 @@ export class Catalogue {
     if (scenarioName === null || repeatedRun !== null) return;
     if (scenarios.some(({ name }) => name === scenarioName)) return;
     this.notices.error(`The scenario ${scenarioName} is no longer on the server.`);
+    this.leaveChanges();
     Object.assign(state, { scenarioName: null, scenarioDocument: null });
-    this.forgetChanges();
     this.store.change('launch');
   }
 
@@ -119,10 +121,10 @@ export class Catalogue {
     // A run that is flown again replaces it once its scenario is read, not if that fails.
     const isCurrent = () =>
       this.selection === selection && state.scenarioName === name && state.repeatedRun === null;
+    this.leaveChanges();
     state.scenarioName = name;
     state.repeatedRun = null;
     state.scenarioDocument = null;
-    this.forgetChanges();
     this.store.change('launch');
     const entry = state.scenarios?.find((scenario) => scenario.name === name);
     if (entry !== undefined && entry.error !== null) {
@@ -134,6 +136,7 @@ export class Catalogue {
       const document = await this.rest.scenario(name);
       if (!isCurrent()) return;
       state.scenarioDocument = document;
+      this.restoreChanges();
     } catch (error) {
       if (!isCurrent()) return;
       state.launchErrors = [{ field: '', message: errorText(error) }];
@@ -153,22 +156,30 @@ export class Catalogue {
       return;
     }
     if (this.choice !== choice) return;
+    this.leaveChanges();
     // Pages that need a scenario's name go on with the same one.
     if (state.scenarios?.some(({ name }) => name === run.scenario) === true) {
       state.scenarioName = run.scenario;
     }
     state.repeatedRun = run;
     state.scenarioDocument = document;
-    this.forgetChanges();
+    this.restoreChanges();
     this.store.change('launch');
   }
 
-  private forgetChanges(): void {
+  /** They are shown again when the same scenario, or run, is chosen again. */
+  private leaveChanges(): void {
     const { state } = this.store;
+    this.kept.keep(state);
     state.scenarioEdits = new Map();
     state.scenarioChanged = false;
     state.launchErrors = [];
     state.scenarioEditor.check = 'none';
+  }
+
+  private restoreChanges(): void {
+    if (this.kept.restore(this.store.state)) return;
+    this.notices.error('The scenario was changed on the server: your changes of it are not kept.');
   }
 
   /** Starts a run of the changed scenario and watches it. @return whether it was started */

@@ -222,7 +222,10 @@ export class ScenarioDesk {
       await this.scenarios.readScenarios();
       // What was typed meanwhile is not in it, and stays.
       const whole = edits() === sent;
-      if (whole) await this.scenarios.selectScenario(name);
+      if (whole) {
+        this.store.state.scenarioEdits = new Map();
+        await this.scenarios.selectScenario(name);
+      }
       const rest = whole ? '' : ' without the changes that were made meanwhile';
       this.notices.info(`The scenario is saved as ${name}${rest}.`);
     } catch (error) {

@@ -169,6 +169,7 @@ describe('saving a scenario', () => {
     ]);
     expect(saved[0]?.[1]['name']).toBe('small');
     expect(chosen).toEqual(['small']);
+    expect(state.scenarioEdits.size).toBe(0);
     expect(state.notices.map(({ text }) => text)).toEqual(['The scenario is saved as small.']);
   });
 
