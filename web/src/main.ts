@@ -60,6 +60,7 @@ import { Session } from './store/session';
 import { Store } from './store/state';
 import { StudyDesk } from './store/studies/study_desk';
 import { SweepDesk } from './store/sweeps/sweep_desk';
+import { TabStorage } from './store/tab_storage';
 import { Themes } from './store/themes';
 import { TrackColours } from './store/track_colours';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
@@ -123,8 +124,12 @@ const calibration = new CalibrationDesk(
   later,
 );
 const worlds = new LogWorlds(store, rest);
-const storage = browserStorage();
-const missions = new MissionDesk(store, rest, session, storage, later, newKey, () =>
+const storage = browserStorage(() => window.localStorage);
+const drafts = new TabStorage(
+  browserStorage(() => window.sessionStorage),
+  storage,
+);
+const missions = new MissionDesk(store, rest, session, drafts, later, newKey, () =>
   catalogue.readScenarios(),
 );
 const sweeps = new SweepDesk(store, new SweepClient(rest), session, notices, later);
@@ -193,9 +198,9 @@ client.connect();
 catalogue.start(parsePermalink(location.hash).runs.length === 0);
 
 /** A browser that refuses to keep anything keeps nothing. */
-function browserStorage(): Storage {
+function browserStorage(find: () => Storage): Storage {
   try {
-    return window.localStorage;
+    return find();
   } catch {
     return { getItem: () => null, setItem: () => undefined };
   }
