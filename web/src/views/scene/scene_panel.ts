@@ -6,7 +6,7 @@ import { shownAlignment } from '../../store/state';
 import type { Topic } from '../../store/state';
 import { drawnTracks } from '../../store/tracks';
 import { legendEntries, legendLine } from '../alignment_legend';
-import { h, perFrame, rebuild, setText } from '../dom';
+import { h, rebuild, setText } from '../dom';
 import type { Panel } from '../panel';
 import { makePanel } from '../panel';
 import { movingRate, standingStill } from '../pictures/picture_panel';
@@ -15,12 +15,9 @@ import { LabelLayer } from './label_layer';
 import { PictureCanvas } from './picture_canvas';
 import { shootScene } from './scene_shot';
 import { steerScene } from './scene_steering';
+import { followSize } from './scene_size';
 import { SceneTools } from './scene_tools';
 import { sceneWish } from './scene_wish';
-
-const kResizeWait_ms = 150;
-const kWidthRange_px = [64, 1920] as const;
-const kHeightRange_px = [64, 1440] as const;
 
 export class ScenePanel implements View {
   readonly root: HTMLElement;
@@ -41,7 +38,7 @@ export class ScenePanel implements View {
     this.panel.tools.append(...this.tools.buttons);
     body.append(this.picture.canvas, this.labels.root, this.legend, this.readout, this.tools.sheet);
     steerScene(context, body);
-    this.observeSize(body);
+    followSize(body, (width_px, height_px) => context.scene.setSize(width_px, height_px));
   }
 
   update(changed: ReadonlySet<Topic>): void {
@@ -89,28 +86,4 @@ export class ScenePanel implements View {
       ...(tracks.length < 2 ? [] : [h('span', { class: 'alignment-note' }, `by ${alignment}`)]),
     ]);
   }
-
-  /** Requests pictures of the panel's size once the size is stable. */
-  private observeSize(area: HTMLElement): void {
-    let timer = 0;
-    let asked = '';
-    const ask = perFrame((size: { width: number; height: number }) => {
-      const width_px = even(size.width * window.devicePixelRatio, kWidthRange_px);
-      const height_px = even(size.height * window.devicePixelRatio, kHeightRange_px);
-      const key = `${width_px}x${height_px}`;
-      if (key === asked) return;
-      asked = key;
-      this.context.scene.setSize(width_px, height_px);
-    });
-    new ResizeObserver(([entry]) => {
-      if (entry === undefined) return;
-      const { width, height } = entry.contentRect;
-      clearTimeout(timer);
-      timer = window.setTimeout(() => ask({ width, height }), asked === '' ? 0 : kResizeWait_ms);
-    }).observe(area);
-  }
-}
-
-function even(value: number, [low, high]: readonly [number, number]): number {
-  return Math.min(high, Math.max(low, Math.round(value / 2) * 2));
 }
