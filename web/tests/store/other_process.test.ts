@@ -17,7 +17,7 @@ function watching(listed: () => Parameters<typeof sampleRun>[0]) {
 }
 
 describe('Catalogue', () => {
-  it('reads a run on that grows without a word of the stream', async () => {
+  it('reads a run on that grows while the stream sends nothing', async () => {
     let frames = 10;
     const { subject, socket, resumes } = watching(() => ({ status: 'running', frames }));
     await subject.readRuns();
@@ -32,7 +32,7 @@ describe('Catalogue', () => {
     expect(resumes()).toHaveLength(1);
   });
 
-  it('reads all of a run again, once, that has ended without a word', async () => {
+  it('reads all of a run again, once, that has ended while the stream sent nothing', async () => {
     const { subject, socket, resumes, store } = watching(() => ({ status: 'completed' }));
     await subject.readRuns();
     expect(resumes()).toEqual([]);
@@ -42,7 +42,7 @@ describe('Catalogue', () => {
     expect(store.state.run?.status).toBe('completed');
   });
 
-  it('does not read again what the stream tells a little later', async () => {
+  it('does not read again what the stream sends a little later', async () => {
     const { subject, socket, resumes } = watching(() => ({ status: 'completed' }));
     await subject.readRuns();
     socket.receive({ type: 'run', run: sampleRun() });
