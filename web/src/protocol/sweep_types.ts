@@ -47,6 +47,8 @@ export interface SweepSpread {
 }
 
 export interface SweepErrors {
+  /** Those that count, whether or not the alignment determines their errors. */
+  flights: number;
   position_m: SweepSpread | null;
   rotation_deg: SweepSpread | null;
   horizontal_m: SweepSpread | null;

@@ -4,6 +4,7 @@ import type { Json } from '../../protocol/rest_types';
 import type {
   SweepAxis,
   SweepDifference,
+  SweepErrors,
   SweepRow,
   SweepSpread,
   SweepState,
@@ -192,20 +193,15 @@ function namesOf(rows: readonly SweepRow[]): string[] {
   return [...new Set(rows.map(({ estimator }) => estimator))];
 }
 
+function errorsOf({ errors }: SweepRow, figure: SweepFigure): SweepErrors | null {
+  if (figure === 'outcome' || figure === 'success') return null;
+  return figure.startsWith('sim3') ? errors.sim3 : errors.paper;
+}
+
 function spreadOf(row: SweepRow, figure: SweepFigure): SweepSpread | null {
-  switch (figure) {
-    case 'sim3_position':
-      return row.errors.sim3.position_m;
-    case 'sim3_rotation':
-      return row.errors.sim3.rotation_deg;
-    case 'paper_position':
-      return row.errors.paper.position_m;
-    case 'paper_rotation':
-      return row.errors.paper.rotation_deg;
-    case 'outcome':
-    case 'success':
-      return null;
-  }
+  const errors = errorsOf(row, figure);
+  if (errors === null) return null;
+  return figure.endsWith('position') ? errors.position_m : errors.rotation_deg;
 }
 
 /** Logarithms of the least and the greatest error shown. */
@@ -234,10 +230,9 @@ function matrixCell(
   if (figure === 'outcome') return { ...made, text: shortOutcome(row), share: rate };
   if (figure === 'success') return { ...made, text: formatNumber(rate * 100, 0), share: rate };
   const spread = spreadOf(row, figure);
-  // X: no flight counts.
+  // X: no flight counts; otherwise the alignment does not determine this error.
   if (spread === null) {
-    const text = row.initialised > 0 && !made.failed ? kNothing : 'X';
-    return { ...made, text, share: null };
+    return { ...made, text: errorsOf(row, figure)?.flights === 0 ? 'X' : kNothing, share: null };
   }
   const log = spread.median > 0 ? Math.log(spread.median) : low;
   const share = high > low ? 1 - (log - low) / (high - low) : 1;

@@ -13,6 +13,7 @@ const spread = (median: number) => ({ flights: 1, median, q1: median, q3: median
 
 function errors(position_m: number | null): SweepErrors {
   return {
+    flights: position_m === null ? 0 : 1,
     position_m: position_m === null ? null : spread(position_m),
     rotation_deg: null,
     horizontal_m: null,
@@ -145,6 +146,20 @@ describe('matricesOf', () => {
     expect(cells[0]?.share).toBeCloseTo(1);
     expect(cells[1]?.share).toBeNull();
     expect(cells[3]?.share).toBeCloseTo(0);
+  });
+
+  it('shows X only where no flight counts', () => {
+    const page = { ...initialSweepPage(), panels: '', figure: 'paper_rotation' as const };
+    // Lost flights on a straight path count, but the alignment does not determine their rotation.
+    const straight = { paper: errors(1), sim3: errors(null) };
+    const rows = [row({ h: 50 }, 'feature', 0, null, { errors: straight })];
+    const texts = (figure: SweepFigure) =>
+      matricesOf(state(rows, { h: [50], v: [], air: [] }), { ...page, figure })
+        ?.matrices[0]?.rows.flat()
+        .map(({ text }) => text);
+    expect(texts('paper_rotation')).toEqual(['–']);
+    expect(texts('paper_position')).toEqual(['1.00']);
+    expect(texts('sim3_rotation')).toEqual(['X']);
   });
 
   it('takes the values of what was flown where the sweep does not tell them', () => {
