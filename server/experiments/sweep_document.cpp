@@ -1,5 +1,6 @@
 #include "server/experiments/sweep_document.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -149,6 +150,17 @@ double later_s(int repeat, const RepeatRule& rule) {
   return std::floor((turns - std::floor(turns)) * rule.vary_start_s * 1e3) / 1e3;
 }
 
+/// Debug images are most of a run folder: hundreds of flights have fewer, unless the sweep asks for
+/// more.
+void record_less(const std::vector<Override>& changes, Scenario& scenario) {
+  const bool asked = std::any_of(changes.begin(), changes.end(), [](const Override& change) {
+    return change.path == "recording" || change.path == "recording.debug_hz";
+  });
+  if (asked || scenario.record_debug_hz <= kSweepDebugHz) return;
+  scenario.record_debug_hz = kSweepDebugHz;
+  scenario.resolved["recording"]["debug_hz"] = kSweepDebugHz;
+}
+
 }  // namespace
 
 Result<Sweep> resolve_sweep(Json document, const fs::path& folder) {
@@ -217,6 +229,7 @@ Result<Scenario> scenario_of(const Sweep& sweep, const SweepCell& cell, int repe
     scenario = load_scenario(sweep.scenario_file, changes, sweep.sources);
     if (!scenario) return in_cell(scenario.error());
   }
+  record_less(changes, *scenario);
   scenario->sources = sweep.sources;
   if (Status status = check_scenario(*scenario); !status) return in_cell(status.error());
   if (!sweep.check) return scenario;

@@ -93,6 +93,10 @@ struct Sweep {
 [[nodiscard]] bool is_skipped(const std::vector<nlohmann::json>& skip,
                               const nlohmann::json& values);
 
+/// Highest rate of the estimators' debug images in a sweep that does not name
+/// `recording.debug_hz` [Hz].
+inline constexpr double kSweepDebugHz = 0.5;
+
 /// The scenario of one flight: the seed increases by one with each repeat. With
 /// repeats.vary_start_s the start of repeat k is later by the fractional part of k times the golden
 /// ratio, times that length: a sequence that is spread evenly however many repeats are flown.

@@ -56,6 +56,23 @@ TEST_F(SweepDocument, TheGridChangesTheLastAxisFastest) {
   EXPECT_EQ(scenario->seed, 3U);  // the file's 1 and two repeats
 }
 
+TEST_F(SweepDocument, FlightsHaveFewDebugImagesUnlessTheSweepAsksForMore) {
+  const auto debug_hz = [&](const std::string& changes) {
+    const auto sweep =
+        loaded(R"("axes": [{"path": "flight.course.airspeed_m_s", "values": [10]}], "set": {)" +
+               changes + "}");
+    EXPECT_TRUE(sweep) << (sweep ? "" : sweep.error().message);
+    const auto scenario = scenario_of(*sweep, cells_of(*sweep)->front(), 1);
+    EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+    EXPECT_EQ(scenario->resolved.at("recording").at("debug_hz"), scenario->record_debug_hz);
+    return scenario->record_debug_hz;
+  };
+  EXPECT_EQ(debug_hz(""), kSweepDebugHz);
+  EXPECT_EQ(debug_hz(R"("recording.frames": true)"), kSweepDebugHz);
+  EXPECT_EQ(debug_hz(R"("recording.debug_hz": 5)"), 5.0);
+  EXPECT_EQ(debug_hz(R"("recording": {"debug_hz": 0})"), 0.0);
+}
+
 TEST_F(SweepDocument, VariantsChangeSeveralFields) {
   const auto sweep = loaded(
       R"("axes": [{"name": "light", "variants": [
