@@ -145,8 +145,10 @@ struct AlignmentScore {
 struct Score {
   Outcome outcome = Outcome::kNotInitialised;
   std::optional<double> outcome_time_s;  ///< of late initialisation, loss, reset or divergence
-  int reset_count = 0;                   ///< further maps, from the first tracked frame on
-  double coverage = 0.0;                 ///< tracked frames / frames of the flight, [0, 1]
+  /// True path flown until then; empty without truth, and in scores of earlier versions.
+  std::optional<double> outcome_distance_m;
+  int reset_count = 0;    ///< further maps, from the first tracked frame on
+  double coverage = 0.0;  ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
@@ -156,6 +158,9 @@ struct Score {
   std::map<AlignmentMode, AlignmentScore> alignments;
   std::map<AlignmentMode, std::string> unavailable;
 };
+
+/// Sets the time of the outcome and the distance flown until then.
+void set_outcome_time(const Trajectory& T_world_camera_truth, double t_s, Score* score);
 
 /// Matches the tracked samples of the longest map with the truth.
 /// Errors: kInvalidArgument with both time ranges if nothing overlaps.

@@ -127,6 +127,7 @@ std::string fix_drift_text(const evaluation::AlignmentScore& alignment, bool wit
 std::string outcome_text(const evaluation::Score& score) {
   std::string text = evaluation::to_string(score.outcome);
   if (score.outcome_time_s) text += formatted(" at %.1f s", *score.outcome_time_s);
+  if (score.outcome_distance_m) text += formatted(", after %.0f m", *score.outcome_distance_m);
   return text;
 }
 

@@ -137,7 +137,7 @@ evaluation::Score score_of(const Dataset& dataset,
   if (crash_of(tracked)) {
     score.outcome =
         tracked.records.back().hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
-    score.outcome_time_s = s_from_ns(track.samples.back().t_ns);
+    evaluation::set_outcome_time(truth, s_from_ns(track.samples.back().t_ns), &score);
   }
   return score;
 }

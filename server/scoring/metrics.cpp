@@ -48,14 +48,15 @@ evaluation::Score score_of(const RunRecords& records, const EstimatorRecords& es
   if (const auto initial = initial_frame(records, estimator)) {
     options.init_true_depth_m = initial->true_depth_m;
   }
-  const Result<Trajectory> truth = truth_of(camera);
-  evaluation::Score score =
-      evaluation::score(truth ? *truth : Trajectory(), track_of(estimator), options);
+  const Result<Trajectory> known = truth_of(camera);
+  const Trajectory truth = known ? *known : Trajectory();
+  evaluation::Score score = evaluation::score(truth, track_of(estimator), options);
   for (const EstimateRecord& record : estimator.records) {
     if (record.crash.empty()) continue;
     score.outcome = record.hung ? evaluation::Outcome::kTimeout : evaluation::Outcome::kCrashed;
     const FrameRow* const frame = frame_row(camera, record.sample.frame);
-    score.outcome_time_s = s_from_ns(frame != nullptr ? frame->t_ns : record.sample.t_ns);
+    evaluation::set_outcome_time(
+        truth, s_from_ns(frame != nullptr ? frame->t_ns : record.sample.t_ns), &score);
     break;
   }
   return score;

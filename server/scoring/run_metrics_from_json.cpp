@@ -231,6 +231,7 @@ Score read_score(const FileField& field) {
   if (!known) outcome.reject("be an outcome");
   score.outcome = *known;
   take(field, "outcome_time_s", score.outcome_time_s);
+  take(field, "outcome_distance_m", score.outcome_distance_m);
   take(field, "reset_count", score.reset_count);
   take(field, "coverage", score.coverage);
   take(field, "initialised_at_s", score.initialised_at_s);

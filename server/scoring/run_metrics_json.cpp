@@ -166,6 +166,7 @@ Json unavailable_json(const Score& score) {
 Json json_from(const Score& score) {
   Json value = {{"outcome", evaluation::to_string(score.outcome)},
                 {"outcome_time_s", or_null(score.outcome_time_s)},
+                {"outcome_distance_m", or_null(score.outcome_distance_m)},
                 {"reset_count", score.reset_count},
                 {"coverage", score.coverage},
                 {"initialised_at_s", or_null(score.initialised_at_s)},

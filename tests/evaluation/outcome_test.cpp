@@ -83,6 +83,21 @@ TEST_F(OutcomeTest, AStartAfterATenthOfTheFlightIsLate) {
   EXPECT_DOUBLE_EQ(result.coverage, 0.9);
 }
 
+TEST_F(OutcomeTest, HasTheDistanceFlownUntilItsTime) {
+  set(400, kFrames, TrackingState::kLost);
+  const Score result = scored();
+  ASSERT_EQ(result.outcome, Outcome::kLost);
+  ASSERT_DOUBLE_EQ(*result.outcome_time_s, 40.0);
+  double flown_m = 0.0;
+  for (std::size_t i = 1; i <= 400; ++i) {
+    const auto& poses = truth_.poses();
+    flown_m += (poses[i].pose.translation - poses[i - 1].pose.translation).norm();
+  }
+  EXPECT_GT(flown_m, 0.5 * truth_.path_length_m());
+  EXPECT_NEAR(result.outcome_distance_m.value(), flown_m, 1e-9);
+  EXPECT_FALSE(score({}, track_, {}).outcome_distance_m.has_value());
+}
+
 TEST_F(OutcomeTest, AStartIsLateWhetherFramesBeforeItWereGivenOrNot) {
   take_away(0, 60);
   EXPECT_EQ(scored().outcome, Outcome::kInitLate);

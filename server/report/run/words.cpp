@@ -44,6 +44,16 @@ std::optional<double> turn_rate_deg_s(const std::vector<FrameRow>& rows, std::in
   return deg_from_rad(angle_rad) / s_from_ns(after->t_ns - before->t_ns);
 }
 
+/// " at 58.5 s, after 1462 m"
+std::string when_words(const evaluation::Score& score) {
+  if (!score.outcome_time_s) return "";
+  std::string words = " at " + seconds_words(*score.outcome_time_s);
+  if (score.outcome_distance_m) {
+    words += ", after " + fixed_text(*score.outcome_distance_m, 0) + "\xC2\xA0m";
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string figure_text(double value) {
@@ -66,14 +76,12 @@ std::string figure_text(const std::optional<double>& value) {
 
 std::string outcome_text(const evaluation::Score& score) {
   std::string text = evaluation::to_string(score.outcome);
-  if (score.outcome_time_s) text += " at " + seconds_words(*score.outcome_time_s);
-  return text;
+  return text + when_words(score);
 }
 
 std::string outcome_words(const EstimatorMetrics& metrics) {
   const evaluation::Score& score = metrics.score;
-  const std::string at =
-      score.outcome_time_s ? " at " + seconds_words(*score.outcome_time_s) : std::string();
+  const std::string at = when_words(score);
   switch (score.outcome) {
     case evaluation::Outcome::kCompleted:
       return "completed the flight";

@@ -94,6 +94,7 @@ TEST(Metrics, OutcomesHaveTheTimesOfTheFlightNotOfTheStamps) {
   const evaluation::Score score = metrics_from(records).estimators.begin()->second.score;
   EXPECT_EQ(score.outcome, evaluation::Outcome::kCrashed);
   EXPECT_DOUBLE_EQ(score.outcome_time_s.value(), 1.9);
+  EXPECT_DOUBLE_EQ(score.outcome_distance_m.value(), 2.5 * 19);
   EXPECT_EQ(score.initialised_at_s, 0.0);
 }
 

@@ -47,6 +47,7 @@ RunMetrics full_metrics() {
   evaluation::Score& score = estimator.score;
   score.outcome = evaluation::Outcome::kCrashed;
   score.outcome_time_s = 2.25;
+  score.outcome_distance_m = 56.5;
   score.reset_count = 1;
   score.coverage = 0.75;
   score.initialised_at_s = 0.5;

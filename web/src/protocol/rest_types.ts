@@ -164,6 +164,8 @@ export interface AlignmentErrors {
 export interface EstimatorMetrics {
   outcome: string;
   outcome_time_s?: number | null;
+  /** True path flown until then; absent in older runs. */
+  outcome_distance_m?: number | null;
   coverage?: number | null;
   alignments?: Record<string, AlignmentErrors>;
   dropped_frames?: number | null;

@@ -56,10 +56,20 @@ function csv(entries: Entry[]): string {
     name,
     estimator.outcome,
     estimator.outcome_time_s ?? '',
+    estimator.outcome_distance_m ?? '',
     estimator.coverage ?? '',
     mode,
     ...errorCsvValues(errors),
   ]);
-  const head = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'coverage', 'alignment'];
+  const head = [
+    'run',
+    'title',
+    'estimator',
+    'outcome',
+    'outcome_time_s',
+    'outcome_distance_m',
+    'coverage',
+    'alignment',
+  ];
   return csvTable([...head, ...kErrorCsvHead], lines);
 }

@@ -188,9 +188,10 @@ export function reportedVoidShare(metrics: Metrics | null): number | null {
   return share > kReportedVoidShare ? share : null;
 }
 
-export function outcomeText({ outcome, outcome_time_s }: EstimatorMetrics): string {
+export function outcomeText(estimator: EstimatorMetrics): string {
+  const { outcome, outcome_time_s: time_s, outcome_distance_m: distance_m } = estimator;
   if (outcome === '') return kNothing;
-  return typeof outcome_time_s === 'number' && outcome !== 'COMPLETED'
-    ? `${outcome} at ${formatNumber(outcome_time_s, 1)} s`
-    : outcome;
+  if (typeof time_s !== 'number' || outcome === 'COMPLETED') return outcome;
+  const distance = typeof distance_m === 'number' ? `, ${formatNumber(distance_m, 0)} m` : '';
+  return `${outcome} at ${formatNumber(time_s, 1)} s${distance}`;
 }

@@ -12,6 +12,7 @@ function scored(id: string, title: string): WatchedRun {
       feature: {
         outcome: 'LOST',
         outcome_time_s: 3.14159,
+        outcome_distance_m: 78.5,
         coverage: 0.5,
         alignments: {
           sim3: { scale: 1, position_rmse_m: 0.1234567890123 },
@@ -38,9 +39,9 @@ describe('exportErrors', () => {
       .split('\n');
     expect(lines).toHaveLength(3);
     expect(lines[0]).toContain(
-      'run,title,estimator,outcome,outcome_time_s,coverage,alignment,scale',
+      'run,title,estimator,outcome,outcome_time_s,outcome_distance_m,coverage,alignment,scale',
     );
-    expect(lines[1]).toMatch(/^r1,"a, ""b""",feature,LOST,3\.14159,0\.5,init_scale,-2,1\.5,/);
+    expect(lines[1]).toMatch(/^r1,"a, ""b""",feature,LOST,3\.14159,78\.5,0\.5,init_scale,-2,1\.5,/);
     const cells = (line = '') => line.replace('"a, ""b"""', 'a').split(',');
     const [head, first] = [cells(lines[0]), cells(lines[1])];
     const cell = (name: string) => first[head.indexOf(name)];
@@ -62,7 +63,7 @@ describe('exportErrors', () => {
     expect(one[0]).toMatch(/^\| Estimator \| Outcome \| Alignment \| Scale \| Position RMSE \[m\]/);
     expect(one[1]).toMatch(/^\|---\|---\|---\|--:\|/);
     expect(one[2]).toContain(
-      '| LOST at 3.1 s | init_scale | −2.0000 | 1.500 | 1.479 | 0.250 | 0.750 | – |',
+      '| LOST at 3.1 s, 79 m | init_scale | −2.0000 | 1.500 | 1.479 | 0.250 | 0.750 | – |',
     );
     const two = exportErrors([scored('r1', 'x|y'), scored('r2', 'z')], 'Markdown');
     expect(two).toContain('| Run | Estimator');
@@ -72,7 +73,9 @@ describe('exportErrors', () => {
   it('writes LaTeX with its special characters escaped', () => {
     const text = exportErrors([scored('r1', '50 % a_b'), scored('r2', 'z')], 'LaTeX');
     expect(text).toContain('\\begin{tabular}{llllrrrrrrrrrrrr}');
-    expect(text).toContain('50 \\% a\\_b & feature & LOST at 3.1 s & init\\_scale & $-$2.0000');
+    expect(text).toContain(
+      '50 \\% a\\_b & feature & LOST at 3.1 s, 79 m & init\\_scale & $-$2.0000',
+    );
     expect(text.match(/\\\\\n/g)).toHaveLength(5);
   });
 

@@ -17,6 +17,7 @@ const metrics: Metrics = {
     feature: {
       outcome: 'LOST',
       outcome_time_s: 12.34,
+      outcome_distance_m: 308.6,
       coverage: 0.5,
       dropped_frames: 3,
       alignments: {
@@ -52,7 +53,7 @@ describe('errorTable', () => {
   it('shows the figures of the chosen alignment next to outcome and coverage', () => {
     const table = errorTable(metrics, 'init_scale');
     expect(table.estimators).toEqual([
-      { name: 'feature', outcome: 'LOST at 12.3 s', good: false },
+      { name: 'feature', outcome: 'LOST at 12.3 s, 309 m', good: false },
       { name: 'none', outcome: 'NOT_INITIALISED', good: false },
     ]);
     const cells = Object.fromEntries(table.rows.map(({ key, cells: row }) => [key, row]));
