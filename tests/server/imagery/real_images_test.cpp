@@ -108,7 +108,8 @@ TEST(VideoImages, ReportFramesWithEqualTimes) {
   auto webm = WebmFile::create(file, 64, 48).value();
   for (int i = 0; i < 6; ++i) {
     const Image picture(64, 48, 3, static_cast<std::uint8_t>(40 * i));
-    for (VideoPacket& packet : encoder.encode(picture, 100 * i).value()) {
+    std::vector<VideoPacket> packets = encoder.encode(picture, 100 * i).value();
+    for (VideoPacket& packet : packets) {
       if (i == 3) packet.t_ms = 200;
       ASSERT_TRUE(webm.add(packet).ok());
     }

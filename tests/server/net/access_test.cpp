@@ -76,7 +76,7 @@ TEST(Access, ABrowserGetsACookieForTheUrlThatTheServerPrints) {
   EXPECT_EQ(server.url(), "http://127.0.0.1:" + port + "/?token=" + kToken);
   const Answer first = ask(server.port(), "GET", std::string("/?token=") + kToken);
   ASSERT_EQ(first.status, 303);
-  EXPECT_EQ(first.headers.at("location"), "/");
+  EXPECT_EQ(first.headers.at("location"), "./");
   const std::string set = first.headers.at("set-cookie");
   EXPECT_THAT(set, HasSubstr("HttpOnly; SameSite=Strict"));
   const Headers cookie = {{"Cookie", set.substr(0, set.find(';'))}};
