@@ -102,9 +102,7 @@ describe('the token', { skip, timeout: 120_000 }, () => {
       assert.equal(cookie.path, '/overfly');
       await browser.page.reload();
       await untilOpen();
-      await dashboard.until(
-        () => document.querySelector('[data-panel=launch] select')?.options.length > 0,
-      );
+      await dashboard.until(() => document.querySelector('#scenario')?.options.length > 0);
     } finally {
       await proxy.close();
     }
