@@ -194,7 +194,7 @@ std::string camera_notes(const server::RunMetrics& metrics) {
 
 std::string score_table(const server::RunMetrics& metrics, evaluation::AlignmentMode mode) {
   if (metrics.estimators.empty()) return "no estimators\n";
-  std::string table = formatted("%-16s %-22s %9s %8s  %12s %12s %12s\n",
+  std::string table = formatted("%-16s %-34s %9s %8s  %12s %12s %12s\n",
                                 "estimator",
                                 "outcome",
                                 "coverage",
@@ -203,7 +203,7 @@ std::string score_table(const server::RunMetrics& metrics, evaluation::Alignment
                                 "held [m]",
                                 "rot. [deg]");
   for (const auto& [name, estimator] : metrics.estimators) {
-    table += formatted("%-16s %-22s %7.1f %% %8lld",
+    table += formatted("%-16s %-34s %7.1f %% %8lld",
                        name.c_str(),
                        outcome_text(estimator.score).c_str(),
                        100.0 * estimator.score.coverage,

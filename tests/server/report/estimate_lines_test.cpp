@@ -137,8 +137,11 @@ TEST(Words, SayWhatHappenedAndUnderWhichCircumstances) {
     return frame < 40 ? TrackingState::kTracking : TrackingState::kLost;
   });
   add_estimator(run, "b", always);
-  EXPECT_EQ(outcome_words(run.metrics_of(run.estimates[0])), "was lost at 4.0\xC2\xA0s");
-  EXPECT_EQ(outcome_text(run.metrics_of(run.estimates[0]).score), "LOST at 4.0\xC2\xA0s");
+  // The integral of sqrt((20 m/s)^2 + (1 m/s^2 t)^2) over 4 s is 80.53 m.
+  EXPECT_EQ(outcome_words(run.metrics_of(run.estimates[0])),
+            "was lost at 4.0\xC2\xA0s, after 81\xC2\xA0m");
+  EXPECT_EQ(outcome_text(run.metrics_of(run.estimates[0]).score),
+            "LOST at 4.0\xC2\xA0s, after 81\xC2\xA0m");
   // The body turns by 0.1 rad/s about the vertical.
   EXPECT_EQ(circumstances(run, run.estimates[0]),
             "Then: bank 11 deg, pitch 0 deg, rotating at 6 deg/s, ground 100 m away along the "
