@@ -23,7 +23,7 @@ class HeightErrors {
   static void add(const Error& error);
 
  private:
-  HeightErrors* outer_;  ///< the one of this thread before
+  HeightErrors* outer_;                 ///< the one of this thread before
   mutable std::optional<Error> first_;  ///< set by add(), also of a const variable
 };
 
