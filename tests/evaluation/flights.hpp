@@ -1,6 +1,8 @@
 // Tracks to score.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -44,6 +46,13 @@ inline EstimateTrack seen_from(const Trajectory& truth, const Similarity& S_worl
 
 inline Similarity some_similarity() {
   return {273.0, Eigen::Quaterniond(0.3, -0.7, 0.2, 0.6).normalized(), {1200.0, -350.0, 80.0}};
+}
+
+/// The pairs of a track with the truth, by the default options.
+inline std::vector<MatchedPose> matches_of(const Trajectory& truth, const EstimateTrack& track) {
+  const auto matches = associate(truth, track, {});
+  EXPECT_TRUE(matches.ok()) << (matches.ok() ? "" : matches.error().message);
+  return matches.ok() ? *matches : std::vector<MatchedPose>{};
 }
 
 }  // namespace overfly::evaluation
