@@ -216,7 +216,7 @@ void OpeningSink::finish() {
       log_.warnings.push_back(
           "the clock" + (boot.vehicle.empty() ? "" : " of " + boot.vehicle) +
           " starts again within the log: times are unique only within one of its " +
-          "runs, and a conversion uses the longest");
+          "runs, and flights and conversions use the one with the most positions");
     }
   }
   const auto warn = [&](std::uint64_t count, const std::string& text) {

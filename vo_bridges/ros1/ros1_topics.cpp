@@ -135,9 +135,12 @@ Status Topics::advertise_sensors() {
 template <typename M, typename Handle>
 Status Topics::subscribe(const std::string& topic, Handle handle, ros::Subscriber& subscriber) {
   using Pointer = typename M::ConstPtr;
-  // ROS has no exception barrier; without memory the message is dropped.
-  const auto contained_handle = [handle = std::move(handle)](const Pointer& message) {
-    (void)contained([&] { handle(message); }, [](const char*) {});
+  // ROS has no exception barrier: the message is dropped.
+  const auto contained_handle = [log = log_, topic, handle = std::move(handle)](
+                                    const Pointer& message) {
+    (void)contained(
+        [&] { handle(message); },
+        [&](const char* what) { log->add("topic " + topic + ": a message was dropped: " + what); });
   };
   try {
     subscriber = handle_.subscribe<M>(topic,

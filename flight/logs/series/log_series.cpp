@@ -108,7 +108,8 @@ class SeriesSink final : public LogSink {
     if (runs_.size() >= kMaxRuns) drop_smallest_run();
     return &runs_.try_emplace(time.boot, max_intervals_).first->second;
   }
-  /// The latest of those with the fewest positions. Runs follow one another: none of them grows.
+  /// The latest of those with the fewest positions. Where streams of a log are read one after the
+  /// other, the attitudes of a run that was dropped may be missing.
   void drop_smallest_run() {
     const auto least = std::min_element(runs_.rbegin(), runs_.rend(), [](auto& a, auto& b) {
       return a.second.positions.count() < b.second.positions.count();

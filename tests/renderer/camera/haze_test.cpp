@@ -5,9 +5,12 @@
 
 #include "renderer/renderer.hpp"
 #include "tests/renderer/procedural_ground.hpp"
+#include "tests/support/support.hpp"
 
 namespace overfly::renderer {
 namespace {
+
+using overfly::testing::larger_error;
 
 constexpr double kExtinctionPerM = 1e-3;
 constexpr double kHeightM = 400.0;
@@ -71,7 +74,7 @@ void expect_koschmieder(Renderer& renderer, PixelFormat format, double tolerance
       const double d_m = range_m(request, x, y);
       const double passed = std::exp(-kExtinctionPerM * d_m);
       const double expected = value(*clear, x, y) * passed + airlight(request) * (1.0 - passed);
-      worst = std::max(worst, std::abs(value(*hazy, x, y) - expected));
+      worst = larger_error(worst, std::abs(value(*hazy, x, y) - expected));
       longest_m = std::max(longest_m, d_m);
     }
   }
