@@ -117,6 +117,14 @@ std::optional<double> reset_time_s(const std::vector<FlownFrame>& flown, std::si
   return std::nullopt;
 }
 
+/// Time in the flight of the frame with this stamp; the stamp itself if no frame has it.
+std::int64_t flight_time_ns(const std::vector<FlownFrame>& flown, std::int64_t stamp_ns) {
+  const auto frame = std::find_if(flown.begin(), flown.end(), [&](const FlownFrame& candidate) {
+    return candidate.given && candidate.sample.t_ns == stamp_ns;
+  });
+  return frame == flown.end() ? stamp_ns : frame->t_ns;
+}
+
 bool starts_late(const std::vector<FlownFrame>& flown, std::size_t first) {
   const std::int64_t begin_ns = flown.front().t_ns;
   const std::int64_t share_ns = (flown.back().t_ns - begin_ns) / kLateStartShare;
@@ -125,13 +133,13 @@ bool starts_late(const std::vector<FlownFrame>& flown, std::size_t first) {
 
 }  // namespace
 
-std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches) {
+std::optional<std::int64_t> divergence_time_ns(const std::vector<MatchedPose>& matches) {
   double smallest = INFINITY;
   double largest = 0.0;
   for (const WindowScale& window : window_scales(matches)) {
     smallest = std::min(smallest, window.scale);
     largest = std::max(largest, window.scale);
-    if (largest > kScaleChange * smallest) return s_from_ns(window.end_ns);
+    if (largest > kScaleChange * smallest) return window.end_ns;
   }
   return std::nullopt;
 }
@@ -203,9 +211,9 @@ void add_outcome(const std::vector<FlownFrame>& flown,
   const std::vector<bool> held = held_frames(flown);
   const auto after_init = static_cast<double>(flown.size() - first);
   const auto kept = static_cast<double>(std::count(held.begin(), held.end(), true));
-  if (const auto diverged_s = divergence_time_s(matches)) {
+  if (const auto diverged_ns = divergence_time_ns(matches)) {
     score->outcome = Outcome::kDiverged;
-    score->outcome_time_s = diverged_s;
+    score->outcome_time_s = s_from_ns(flight_time_ns(flown, *diverged_ns));
   } else if (tracked_maps.size() > 1) {
     score->outcome = Outcome::kReset;
     score->outcome_time_s = reset_time_s(flown, first);

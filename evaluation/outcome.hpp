@@ -26,9 +26,10 @@ void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,
                  Score* score);
 
-/// The time at which the estimate's scale relative to the truth has changed by more than a factor
+/// The stamp at which the estimate's scale relative to the truth has changed by more than a factor
 /// of two between any two windows of 10 s; empty if it never does. Path lengths are summed over
 /// steps of one second, so that jitter between frames does not add to the path.
-[[nodiscard]] std::optional<double> divergence_time_s(const std::vector<MatchedPose>& matches);
+[[nodiscard]] std::optional<std::int64_t> divergence_time_ns(
+    const std::vector<MatchedPose>& matches);
 
 }  // namespace overfly::evaluation

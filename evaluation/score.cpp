@@ -75,24 +75,13 @@ CovarianceCounts covariances_of(const EstimateTrack& estimate) {
   return counts;
 }
 
-/// As Trajectory::path_length_m, up to a time.
-double path_until_m(const Trajectory& trajectory, std::int64_t t_ns) {
-  const std::vector<StampedPose>& poses = trajectory.poses();
-  double path_m = 0.0;
-  for (std::size_t i = 1; i < poses.size() && poses[i].t_ns <= t_ns; ++i) {
-    if (trajectory.has_gap_before(i)) continue;
-    path_m += (poses[i].pose.translation - poses[i - 1].pose.translation).norm();
-  }
-  return path_m;
-}
-
 }  // namespace
 
 void set_outcome_time(const Trajectory& T_world_camera_truth, double t_s, Score* score) {
   score->outcome_time_s = t_s;
   score->outcome_distance_m.reset();
   if (T_world_camera_truth.empty()) return;
-  score->outcome_distance_m = path_until_m(T_world_camera_truth, ns_from_s(t_s));
+  score->outcome_distance_m = T_world_camera_truth.path_length_m(ns_from_s(t_s));
 }
 
 Score score(const Trajectory& T_world_camera_truth,

@@ -67,9 +67,9 @@ std::size_t Trajectory::nearest(std::int64_t t_ns) const {
   return static_cast<std::size_t>((before_is_nearer ? before : after) - poses_.begin());
 }
 
-double Trajectory::path_length_m() const {
+double Trajectory::path_length_m(std::int64_t until_ns) const {
   double length_m = 0.0;
-  for (std::size_t i = 1; i < poses_.size(); ++i) {
+  for (std::size_t i = 1; i < poses_.size() && poses_[i].t_ns <= until_ns; ++i) {
     if (after_gap_.contains(i)) continue;
     length_m += (poses_[i].pose.translation - poses_[i - 1].pose.translation).norm();
   }

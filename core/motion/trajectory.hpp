@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <vector>
@@ -45,8 +46,9 @@ class Trajectory {
   [[nodiscard]] std::optional<Pose> at(std::int64_t t_ns) const;
   /// Index of the pose whose stamp is nearest to t. @pre !empty()
   [[nodiscard]] std::size_t nearest(std::int64_t t_ns) const;
-  /// Length of the polyline through the positions [m], excluding gaps.
-  [[nodiscard]] double path_length_m() const;
+  /// Length of the polyline through the positions up to a time [m], excluding gaps.
+  [[nodiscard]] double path_length_m(
+      std::int64_t until_ns = std::numeric_limits<std::int64_t>::max()) const;
 
  private:
   std::vector<StampedPose> poses_;

@@ -154,7 +154,8 @@ double later_s(int repeat, const RepeatRule& rule) {
 /// more.
 void record_less(const std::vector<Override>& changes, Scenario& scenario) {
   const bool asked = std::any_of(changes.begin(), changes.end(), [](const Override& change) {
-    return change.path == "recording" || change.path == "recording.debug_hz";
+    return change.path == "recording.debug_hz" ||
+           (change.path == "recording" && change.value.contains("debug_hz"));
   });
   if (asked || scenario.record_debug_hz <= kSweepDebugHz) return;
   scenario.record_debug_hz = kSweepDebugHz;

@@ -277,6 +277,16 @@ TEST_F(OutcomeTest, DivergedWhenTheScaleChangesByMoreThanTwo) {
   }
 }
 
+TEST_F(OutcomeTest, AFastClockDoesNotDelayADivergence) {
+  change_scale(&track_, 2.5);
+  const double time_s = scored().outcome_time_s.value();
+  shift_stamps(6 * kNsPerS);
+  const Score result = scored();
+  ASSERT_EQ(result.outcome, Outcome::kDiverged);
+  // Scales are those of the truth at the stamps, in steps of one second.
+  EXPECT_NEAR(result.outcome_time_s.value(), time_s, 1.0);
+}
+
 TEST_F(OutcomeTest, AChangeBelowTwoIsNoDivergence) {
   change_scale(&track_, 0.6);
   EXPECT_EQ(scored().outcome, Outcome::kCompleted);

@@ -285,6 +285,7 @@ class Explainer {
   void withdraw(Cause cause) {
     std::erase(result_.necessary, cause);
     std::erase(result_.sufficient, cause);
+    std::erase(result_.sufficiency_tested, cause);
     result_.together.clear();
     result_.withdrawn.push_back(cause);
   }

@@ -123,7 +123,7 @@ std::vector<std::string> sentences_of(const Explanation& explanation) {
   }
   if (!explanation.reproduced) {
     sentences.emplace_back(
-        "Flown again with nothing changed, the estimator survives. The failure cannot be explained "
+        "Flown again with nothing changed, its failure does not come again. It cannot be explained "
         "by changing one cause at a time: it depends on chance, or on the load of the machine if "
         "the run was flown in real time.");
     return sentences;

@@ -74,7 +74,10 @@ void FlightProcesses::kill(const std::string& id) {
 }
 
 void FlightProcesses::stop() {
-  for (const Child& child : children_) ::kill(child.pid, SIGTERM);
+  // A second signal would end at once a flight that was already asked to end.
+  for (const Child& child : children_) {
+    if (!child.timed_out) ::kill(child.pid, SIGTERM);
+  }
   const auto start = Clock::now();
   while (!children_.empty() && seconds_since(start) < kPatience_s) {
     if (!*ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));

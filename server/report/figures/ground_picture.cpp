@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "terrain/height_errors.hpp"
+
 namespace overfly::server::report {
 namespace {
 
@@ -140,6 +142,7 @@ Result<Image> ground_picture(const TileSource& tiles,
                                   (extent.north_high_m - extent.north_low_m) / height_px);
   const int level = level_for(grid, pixel_m);
   TileReader reader(tiles, level, cancelled);
+  const terrain::HeightErrors errors;
   const MapLattice lattice(tiles, extent, width_px, height_px);
   Image picture(width_px, height_px, 3);
   for (int y = 0; y < height_px; ++y) {
@@ -149,7 +152,7 @@ Result<Image> ground_picture(const TileSource& tiles,
       std::copy(rgb->begin(), rgb->end(), &picture.at(x, y));
     }
   }
-  if (Status status = tiles.status(); !status) return status.error();
+  if (Status read = errors.status(); !read) return read.error();
   return picture;
 }
 

@@ -69,6 +69,7 @@ TEST_F(SweepDocument, FlightsHaveFewDebugImagesUnlessTheSweepAsksForMore) {
   };
   EXPECT_EQ(debug_hz(""), kSweepDebugHz);
   EXPECT_EQ(debug_hz(R"("recording.frames": true)"), kSweepDebugHz);
+  EXPECT_EQ(debug_hz(R"("recording": {"frames": true})"), kSweepDebugHz);
   EXPECT_EQ(debug_hz(R"("recording.debug_hz": 5)"), 5.0);
   EXPECT_EQ(debug_hz(R"("recording": {"debug_hz": 0})"), 0.0);
 }

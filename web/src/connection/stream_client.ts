@@ -198,6 +198,11 @@ export class StreamClient {
     this.socket.send(JSON.stringify({ ...message, request: this.request }));
   }
 
+  /** Whether the server has yet to answer that it opens a run. */
+  isOpening(run: string): boolean {
+    return [...this.opening.values()].includes(run);
+  }
+
   private sendWatch(run: string, offset_ns: number, resume: Resume): void {
     if (this.greeted) this.opening.set(this.request + 1, run);
     const offset = offset_ns === 0 ? {} : { offset_ns };

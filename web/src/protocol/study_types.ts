@@ -91,8 +91,8 @@ export interface Explanation {
   sentences: string[];
   flights: Reflight[];
   untried: { cause: string; reason: string }[];
-  /** Disturbances that every flight kept, because other causes were to be tried. */
-  not_changed: string[];
+  /** Causes that were flown without all others; absent in older studies. */
+  sufficiency_tested?: string[];
   /** What causes are called. */
   words: Record<string, string>;
 }

@@ -4,6 +4,7 @@ import { errorText, fieldErrorsOf } from '../connection/rest_error';
 import type { JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
+import { SilentRuns } from './runs/silent_runs';
 import { draftOf, kChangedMeanwhile, overridesBetween, sameJson } from './scenario/draft';
 import { KeptEdits } from './scenario/kept_edits';
 import { documentErrors } from './scenario/schema_check';
@@ -16,22 +17,11 @@ const kPreferred = 'course';
 const kPollActive_ms = 1500;
 const kPollIdle_ms = 8000;
 
-/** So many lists that know more than the stream are no coincidence. */
-const kSilentLists = 2;
-
-interface Silence {
-  /** The last that the stream said. */
-  said: string;
-  /** Lists since then. */
-  lists: number;
-}
-
 export class Catalogue {
   private polling = false;
   /** Ids of the runs that were over in the last list; the stream changes those of the state. */
   private over: ReadonlySet<string> = new Set();
-  /** Watched runs of which the last list knew more than the stream had said. */
-  private silences = new Map<string, Silence>();
+  private readonly silent: SilentRuns;
   private reading: Promise<void> = Promise.resolve();
   /** Number of the latest choice in the launcher: a scenario, or a run that is flown again. */
   private choice = 0;
@@ -46,7 +36,9 @@ export class Catalogue {
     private readonly notices: Notices,
     private readonly later: (callback: () => void, delay_ms: number) => void,
     private readonly newKey: () => string,
-  ) {}
+  ) {
+    this.silent = new SilentRuns(session);
+  }
 
   /**
    * Reads the scenarios once, and the runs periodically.
@@ -182,6 +174,20 @@ export class Catalogue {
     this.notices.error('The scenario was changed on the server: your changes of it are not kept.');
   }
 
+  /**
+   * Whether the server still has the scenario that the launcher shows: somebody else may have saved
+   * it. If not, the launcher shows the new one, or that it is not that of the changes.
+   */
+  async isAsShown(): Promise<boolean> {
+    const { state } = this.store;
+    const shown = state.scenarioDocument;
+    if (state.scenarioName !== null) await this.readAgain(state.scenarioName);
+    if (state.scenarioChanged) return false;
+    if (state.scenarioDocument === shown) return true;
+    this.notices.error('The scenario was changed on the server: Launch shows the new one.');
+    return false;
+  }
+
   /** Starts a run of the changed scenario and watches it. @return whether it was started */
   async launch(): Promise<boolean> {
     const { state } = this.store;
@@ -194,10 +200,12 @@ export class Catalogue {
     this.store.change('launch');
     let started = false;
     try {
-      const run = await this.fly(document);
-      state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
-      this.session.selectRun(run.id);
-      started = true;
+      if (await this.isAsShown()) {
+        const run = await this.fly(document);
+        state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
+        this.session.selectRun(run.id);
+        started = true;
+      }
     } catch (error) {
       state.launchErrors = fieldErrorsOf(error);
     }
@@ -290,9 +298,8 @@ export class Catalogue {
       this.announceEnded(now, listed);
       state.runs = withNewer(listed, before, now);
       state.listError = null;
-      const { silences } = this;
-      this.silences = new Map();
-      for (const run of listed) this.takeListed(run, silences.get(run.id));
+      this.silent.beginList();
+      for (const run of listed) this.takeListed(run);
       this.announceDeleted(before, listed);
       if (state.scenarios === null) await this.readScenarios();
     } catch (error) {
@@ -305,28 +312,15 @@ export class Catalogue {
    * What the stream does not send about a watched run: its results, tags and note, and that another
    * process flies it on.
    */
-  private takeListed(listed: Run, silence: Silence | undefined): void {
+  private takeListed(listed: Run): void {
     const watched = this.store.state.watchedRun(listed.id);
     if (watched === undefined) return;
-    this.readFurther(listed, watched.run ?? listed, silence);
+    this.silent.take(listed, watched.run ?? listed);
     const { results, tags, note } = listed;
     const run = watched.run === null ? listed : { ...watched.run, results, tags, note };
     if (JSON.stringify(run) === JSON.stringify(watched.run)) return;
     watched.run = run;
     this.store.change('run');
-  }
-
-  /** The server reads a run of another process only when it is asked; its own ones are streamed. */
-  private readFurther(listed: Run, streamed: Run, silence: Silence | undefined): void {
-    const over = !isActive(listed);
-    if (!isActive(streamed) || (!over && listed.frames <= streamed.frames)) return;
-    const said = JSON.stringify([streamed.status, streamed.frames, over]);
-    const lists = silence?.said === said ? silence.lists + 1 : 1;
-    this.silences.set(listed.id, { said, lists });
-    // All of a long run is not sent twice because the connection is slow.
-    if (over ? lists === kSilentLists : lists % kSilentLists === 0) {
-      this.session.readAgain(listed.id, over);
-    }
   }
 
   /** Says which known runs ended; those that the viewer stopped are not announced. */
@@ -366,7 +360,7 @@ export class Catalogue {
     const active =
       this.store.state.runs?.some((run) => isActive(run) || !this.over.has(run.id)) === true;
     const failing = this.store.state.listError !== null;
-    const soon = active || failing || this.silences.size > 0;
+    const soon = active || failing || this.silent.any;
     this.later(() => void this.poll(), soon ? kPollActive_ms : kPollIdle_ms);
   }
 }

@@ -163,6 +163,7 @@ export class Session implements StreamListener {
   /** Reads a run again that another process writes. @param whole  with the rows that have come */
   readAgain(id: string, whole: boolean): void {
     const offset_ns = this.state.watchedRun(id)?.offset_ns;
+    if (this.client?.isOpening(id) === true) return;
     if (offset_ns !== undefined) this.client?.watch(id, offset_ns, whole ? {} : this.resume(id));
   }
 

@@ -5,10 +5,14 @@ import { catalogue } from '../support/catalogue_bench';
 import { sampleRun } from '../support/samples';
 
 /** Watches a run of which 10 frames have been streamed. @param listed  as the list has it */
-function watching(listed: () => Parameters<typeof sampleRun>[0]) {
+function watching(listed: () => Parameters<typeof sampleRun>[0], opened = true) {
   const bench = catalogue({ 'GET /runs': () => [200, { runs: [sampleRun(listed())] }] });
   const { session, socket } = bench;
   session.showRuns([{ id: 'r1', offset_ns: 5e9 }], null, null);
+  const answer = () => {
+    socket.receive({ type: 'ok', request: Number(socket.sent.at(-1)?.['request']) });
+  };
+  if (opened) answer();
   socket.receive({ type: 'run', run: sampleRun({ status: 'running', frames: 10 }) });
   const columns = { frame: [0, 1], t_ns: [0, 1] };
   socket.receive({ type: 'rows', run: 'r1', stream: 'truth', seq: 0, columns });
@@ -40,6 +44,13 @@ describe('Catalogue', () => {
     expect(resumes()).toMatchObject([{ run: 'r1', offset_ns: 5e9, resume: {} }]);
     socket.receive({ type: 'run', run: sampleRun() });
     expect(store.state.run?.status).toBe('completed');
+  });
+
+  it('does not read on a run that the server is still opening', async () => {
+    let frames = 10;
+    const { subject, resumes } = watching(() => ({ status: 'running', frames }), false);
+    for (frames = 20; frames < 60; frames += 10) await subject.readRuns();
+    expect(resumes()).toEqual([]);
   });
 
   it('does not read again what the stream sends a little later', async () => {

@@ -47,6 +47,33 @@ describe('Catalogue', () => {
     expect(subject.asked()).not.toBeNull();
   });
 
+  it('looks before a flight whether the scenario is still the one that is shown', async () => {
+    let saved = document;
+    let flights = 0;
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /scenarios/course': () => [200, saved],
+      'POST /runs': () => {
+        flights += 1;
+        return [202, sampleRun()];
+      },
+    });
+    await subject.readScenarios();
+    saved = { ...document, seed: 2 };
+    expect(await subject.launch()).toBe(false);
+    expect(store.state.scenarioDocument).toEqual(saved);
+    store.state.scenarioEdits = new Map([['pacing', '"real_time"']]);
+    saved = { ...document, seed: 3 };
+    expect(await subject.launch()).toBe(false);
+    expect(store.state.launchErrors).toEqual([kChangedMeanwhile]);
+    expect(store.state.launching).toBe(false);
+    expect(flights).toBe(0);
+    store.state.scenarioEdits = new Map();
+    await subject.readScenarios();
+    expect(await subject.launch()).toBe(true);
+    expect(flights).toBe(1);
+  });
+
   it('leaves a scenario that was deleted', async () => {
     let names = ['mine', 'course'];
     const { store, subject } = catalogue({

@@ -80,7 +80,6 @@ export function explanation(fields: Partial<Explanation> = {}): Explanation {
     sentences: [],
     flights: [],
     untried: [],
-    not_changed: [],
     words: { blur: 'the blur of the images', noise: 'the noise of the sensor' },
     ...fields,
   };

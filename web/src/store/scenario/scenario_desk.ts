@@ -28,6 +28,8 @@ type Rest = Pick<
 interface Scenarios {
   readScenarios(): Promise<void>;
   selectScenario(name: string): Promise<void>;
+  /** Whether the server still has the scenario that is shown. */
+  isAsShown(): Promise<boolean>;
 }
 
 export class ScenarioDesk {
@@ -213,6 +215,13 @@ export class ScenarioDesk {
     Object.assign(editor, { saving: true, saveError: '', replaces: null });
     this.changed();
     try {
+      const isOwn = name === this.store.state.scenarioName && this.store.state.repeatedRun === null;
+      if (replace && isOwn && !(await this.scenarios.isAsShown())) {
+        this.refuse(kChangedMeanwhile.message);
+        editor.saving = false;
+        this.changed();
+        return;
+      }
       await this.rest.saveScenario(name, document, replace);
       const { state } = this.store;
       // It is no change by somebody else.

@@ -57,6 +57,7 @@ export interface CauseRow {
 /** Each cause that a flight says something about: the named ones first. */
 export function causeRows(explanation: Explanation): CauseRow[] {
   const { necessary, sufficient, together, pair, margin, words, flights } = explanation;
+  const tested = explanation.sufficiency_tested ?? [];
   const named = [...new Set([...necessary, ...sufficient, ...together, ...pair])];
   const changed = flights.filter(({ changes, error }) => error === null && changes.length === 1);
   const causes = [...new Set([...named, ...changed.flatMap(causesOf)])];
@@ -64,25 +65,9 @@ export function causeRows(explanation: Explanation): CauseRow[] {
   return causes.map((cause) => ({
     words: plainWords(words[cause] ?? cause),
     necessary: necessary.includes(cause) ? 'yes' : failed.includes(cause) ? 'no' : '',
-    sufficient: sufficient.includes(cause) ? 'yes' : survivedOnly(explanation, cause) ? 'no' : '',
+    sufficient: sufficient.includes(cause) ? 'yes' : tested.includes(cause) ? 'no' : '',
     margin: margin?.cause === cause ? marginText(margin) : '',
   }));
-}
-
-/** As the server names the flight without all of them. */
-const kCalm = 'without any disturbance';
-
-/** Whether the estimator survived with all of one cause and nothing of the others. */
-function survivedOnly(explanation: Explanation, cause: string): boolean {
-  const { flights, necessary, not_changed } = explanation;
-  if (not_changed.length > 0) return false;
-  const calm = flights.filter(({ name }) => name === kCalm).flatMap(causesOf);
-  const others = [...calm, ...necessary].filter((other) => other !== cause);
-  return flights.some((flight) => {
-    const taken = causesOf(flight);
-    const isOnly = !taken.includes(cause) && others.every((other) => taken.includes(other));
-    return isOnly && flight.survived === true && flight.seed === flights[0]?.seed;
-  });
 }
 
 function causesOf({ changes }: Reflight): string[] {

@@ -3,7 +3,7 @@ import type { Context } from '../view';
 
 /** Shows the errors of the scenario in its place if it has any. */
 export function prepareStudy(
-  { catalogue, layouts, notices, studies }: Context,
+  { catalogue, layouts, notices, store, studies }: Context,
   kind: 'predict' | 'hunt',
 ): void {
   const source = catalogue.asked();
@@ -11,6 +11,11 @@ export function prepareStudy(
     void studies.prepare(kind, source);
     return;
   }
+  studies.close();
   layouts.show('launcher');
-  notices.error('No study can be made of this scenario: Launch shows why.');
+  notices.error(
+    store.state.scenarioDocument === null
+      ? 'A study needs a scenario: choose one in Launch.'
+      : 'No study can be made of this scenario: Launch shows why.',
+  );
 }

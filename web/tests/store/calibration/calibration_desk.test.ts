@@ -107,7 +107,11 @@ beforeEach(() => {
   const wait = (callback: () => void) => later.push(callback);
   const notices = new Notices(store, () => 0);
   const none = () => Promise.resolve();
-  const list = { readScenarios: none, selectScenario: none };
+  const list = {
+    readScenarios: none,
+    selectScenario: none,
+    isAsShown: () => Promise.resolve(true),
+  };
   const scenarios = new ScenarioDesk(store, rest, list, notices, (check) => checks.push(check));
   desk = new CalibrationDesk(store, new CalibrationClient(rest), rest, scenarios, notices, wait);
 });

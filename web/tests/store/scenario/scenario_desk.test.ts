@@ -29,6 +29,7 @@ function desk() {
   const saved: [string, JsonObject, boolean][] = [];
   const chosen: string[] = [];
   const readings: (JsonObject | null)[] = [];
+  const elsewhere = { saved: false };
   const rest = {
     scenarioSchema: () => Promise.resolve(JSON.parse(schemaText) as JsonObject),
     checkScenario: (document: JsonObject, signal: AbortSignal) =>
@@ -60,6 +61,7 @@ function desk() {
       chosen.push(name);
       return Promise.resolve();
     },
+    isAsShown: () => Promise.resolve(!elsewhere.saved),
   };
   const subject = new ScenarioDesk(store, rest, scenarios, new Notices(store, () => {}), later);
   const pause = async () => {
@@ -68,7 +70,7 @@ function desk() {
   };
   const { state } = store;
   const settle = () => new Promise((done) => setTimeout(done, 0));
-  return { subject, store, state, pause, asked, saved, chosen, readings, settle };
+  return { subject, store, state, pause, asked, saved, chosen, readings, elsewhere, settle };
 }
 
 describe('changes of the scenario', () => {
@@ -194,6 +196,21 @@ describe('saving a scenario', () => {
     await saving;
     expect(readings).toEqual([saved[0]?.[1]]);
     expect(state.scenarioDocument?.['title']).toBe('First');
+  });
+
+  it('asks the server whether somebody else has saved it before it is replaced', async () => {
+    const { subject, state, saved, elsewhere } = desk();
+    state.scenarioName = 'mine';
+    elsewhere.saved = true;
+    await subject.save('mine', true);
+    expect(saved).toEqual([]);
+    expect(state.scenarioEditor).toMatchObject({
+      saving: false,
+      saveError: expect.stringMatching(/changed on the server/),
+    });
+    elsewhere.saved = false;
+    await subject.save('mine', true);
+    expect(saved.map(([name]) => name)).toEqual(['mine']);
   });
 
   it('does not replace one that was changed meanwhile', async () => {

@@ -10,15 +10,22 @@ it('prepares no study of a scenario with errors, and shows them', async () => {
   const done: unknown[] = [];
   const context = {
     catalogue: subject,
+    store,
     layouts: { show: (panel: string) => done.push(panel) },
-    notices: { error: () => done.push('notice') },
-    studies: { prepare: (kind: string, source: unknown) => done.push([kind, source]) },
+    notices: { error: (text: string) => done.push(text) },
+    studies: {
+      prepare: (kind: string, source: unknown) => done.push([kind, source]),
+      close: () => done.push('closed'),
+    },
   } as unknown as Context;
   store.state.scenarioEdits = new Map([['pacing', '{']]);
   prepareStudy(context, 'predict');
-  expect(done).toEqual(['launcher', 'notice']);
+  expect(done).toEqual(['closed', 'launcher', expect.stringMatching(/Launch shows why/)]);
   expect(store.state.launchErrors.map(({ field }) => field)).toEqual(['pacing']);
   store.state.scenarioEdits = new Map([['seed', '2']]);
   prepareStudy(context, 'hunt');
-  expect(done[2]).toMatchObject(['hunt', { scenario: 'course', overrides: { seed: 2 } }]);
+  expect(done[3]).toMatchObject(['hunt', { scenario: 'course', overrides: { seed: 2 } }]);
+  store.state.scenarioDocument = null;
+  prepareStudy(context, 'hunt');
+  expect(done[6]).toMatch(/choose one in Launch/);
 });
