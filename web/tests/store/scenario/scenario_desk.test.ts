@@ -204,10 +204,8 @@ describe('saving a scenario', () => {
     elsewhere.saved = true;
     await subject.save('mine', true);
     expect(saved).toEqual([]);
-    expect(state.scenarioEditor).toMatchObject({
-      saving: false,
-      saveError: expect.stringMatching(/changed on the server/),
-    });
+    expect(state.scenarioEditor.saving).toBe(false);
+    expect(state.scenarioEditor.saveError).toMatch(/changed on the server/);
     elsewhere.saved = false;
     await subject.save('mine', true);
     expect(saved.map(([name]) => name)).toEqual(['mine']);
