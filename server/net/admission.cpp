@@ -62,7 +62,14 @@ std::optional<HttpResponse> not_admitted(const ServerContext& context,
   if (auto response = forbidden(context.allowed_hosts, local.to_string(), any_origin, *request)) {
     return response;
   }
-  return context.token_gate.check(request);
+  if (auto response = context.token_gate.check(request)) return response;
+  if (request->access == Access::kViewer && context.router.changes(*request)) {
+    return error_response(403,
+                          "read_only",
+                          "this token is for looking only: " + request->method +
+                              " here needs the operator's (overfly serve --token-file)");
+  }
+  return std::nullopt;
 }
 
 }  // namespace overfly::net

@@ -15,7 +15,7 @@ namespace overfly::net {
 [[nodiscard]] HttpRequest plain_request(
     const boost::beast::http::request<boost::beast::http::string_body>& message);
 
-/// Checks the requested host, the requesting page and the token.
+/// Checks the requested host, the requesting page, the token and what it allows.
 /// @param local  the connection's local address
 /// @param request  the token is removed from its target
 /// @return the response to send instead of serving the request; empty = serve it

@@ -187,7 +187,7 @@ void HttpSession::receive_body() {
 
 void HttpSession::upgrade() {
   const http::request<http::string_body> message = parser_->get();
-  const auto service = websocket_service(message, request_.target, context_);
+  const auto service = websocket_service(message, request_, context_);
   if (!service) {
     keep_alive_ = false;
     write(error_response(service.error()));

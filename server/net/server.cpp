@@ -32,6 +32,13 @@ Status check_options(const ServerOptions& options) {
   for (const std::string& name : options.allowed_hosts) {
     if (Status status = AllowedHosts::check_name(name); !status) return status;
   }
+  if (!options.viewer_token.empty()) {
+    if (options.token.empty() || options.token == options.viewer_token) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "the viewers' token must differ from the operators', which is required then"};
+    }
+    if (Status status = check_token(options.viewer_token); !status) return status;
+  }
   if (!options.token.empty()) return check_token(options.token);
   if (is_loopback_host(options.address)) return {};
   return Error{ErrorCode::kInvalidArgument,
@@ -126,14 +133,21 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
 
 std::uint16_t Server::port() const { return impl_->port; }
 
-std::string Server::url() const {
+std::string Server::url() const { return url_with(impl_->context->options.token); }
+
+std::string Server::viewer_url() const {
+  const std::string& token = impl_->context->options.viewer_token;
+  return token.empty() ? "" : url_with(token);
+}
+
+std::string Server::url_with(const std::string& token) const {
   const ServerOptions& options = impl_->context->options;
   std::string address = options.address;
   if (address == "0.0.0.0") address = "127.0.0.1";
   if (address == "::") address = "::1";
   const bool is_ipv6 = address.find(':') != std::string::npos;
   return "http://" + (is_ipv6 ? "[" + address + "]" : address) + ":" + std::to_string(impl_->port) +
-         "/" + (options.token.empty() ? "" : "?token=" + options.token);
+         "/" + (token.empty() ? "" : "?token=" + token);
 }
 
 }  // namespace overfly::net

@@ -58,7 +58,7 @@ struct ServerContext {
         views(view_service),
         router([this](const std::string& what) { log("error", what); }),
         files(server_options.web_folder),
-        token_gate(server_options.token),
+        token_gate(server_options.token, server_options.viewer_token),
         allowed_hosts(server_options.allowed_hosts),
         logs(
             [this] {

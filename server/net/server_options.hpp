@@ -38,6 +38,8 @@ struct ServerOptions {
   std::uint16_t port = 8480;          ///< 0 = any free port
   /// Every request must carry it (access_token.hpp); empty = no token, only on a loopback address.
   std::string token;
+  /// Of those who may look at everything and change nothing; empty = there is none.
+  std::string viewer_token;
   /// Host names and addresses that clients may use, in addition to those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   std::filesystem::path web_folder;  ///< built dashboard; empty = REST and WebSocket only

@@ -71,10 +71,12 @@ bool is_websocket_target(const std::string& target) {
 bool is_foxglove_target(const std::string& target) { return path_of(target) == kFoxglovePath; }
 
 Result<WebSocketService> websocket_service(const http::request<http::string_body>& upgrade,
-                                           const std::string& target,
+                                           const HttpRequest& request,
                                            const std::shared_ptr<ServerContext>& context) {
-  if (is_foxglove_target(target)) return foxglove_service(upgrade, target, context);
-  return WebSocketService{"", [](ViewerPort& port) { return std::make_unique<Viewer>(port); }};
+  if (is_foxglove_target(request.target)) return foxglove_service(upgrade, request.target, context);
+  return WebSocketService{"", [access = request.access](ViewerPort& port) {
+                            return std::make_unique<Viewer>(port, access);
+                          }};
 }
 
 }  // namespace overfly::net

@@ -18,12 +18,12 @@ namespace overfly::net {
 [[nodiscard]] bool is_foxglove_target(const std::string& target);
 
 /// The service that an upgrade asks for.
-/// @param target  its target without the token. @pre is_websocket_target(target)
+/// @param request  its header, without the token. @pre is_websocket_target(request.target)
 /// Errors: kInvalidArgument if the client offers no subprotocol that the endpoint speaks, or for an
 /// invalid query.
 [[nodiscard]] Result<WebSocketService> websocket_service(
     const boost::beast::http::request<boost::beast::http::string_body>& upgrade,
-    const std::string& target,
+    const HttpRequest& request,
     const std::shared_ptr<ServerContext>& context);
 
 }  // namespace overfly::net

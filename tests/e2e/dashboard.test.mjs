@@ -320,8 +320,13 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
         [bar, before],
       );
     };
-    // The button keeps the focus while the flight goes on, and its place once the flight is known.
+    // The button keeps the focus while the flight goes on, and its place once the list knows what is flown: the stream
+    // reports progress before that.
     await stop.focus();
+    await dashboard.until((id) => {
+      const traits = document.querySelector(`.run[data-run="${id}"] [data-role=flight]`);
+      return traits.textContent.includes('m/s');
+    }, second);
     await untilItFlies();
     const button = await stop.elementHandle();
     await untilItFlies();

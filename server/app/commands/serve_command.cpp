@@ -38,6 +38,7 @@ struct ServeArguments {
   std::string scenarios;
   std::string web;
   std::string token_file;
+  std::string viewer_token_file;
   /// Host names and addresses that clients may use, in addition to those of AllowedHosts.
   std::vector<std::string> allowed_hosts;
   bool no_token = false;
@@ -79,14 +80,24 @@ void warn_of_waiting_runs(const server::RunList& list) {
   if (!waiting.empty()) spdlog::warn("these runs waited and will not fly: {}", waiting);
 }
 
-/// The token that clients must send; empty with --no-token.
-Result<std::string> token_of(const ServeArguments& arguments) {
-  if (arguments.no_token) return std::string();
-  if (arguments.token_file.empty()) return net::make_token();
-  auto read = open_token_file(arguments.token_file);
+Result<std::string> token_from(const std::string& file) {
+  auto read = open_token_file(file);
   if (!read) return read.error();
   if (!read->warning.empty()) spdlog::warn(read->warning);
   return std::move(read->token);
+}
+
+/// Sets the tokens that clients must send; none with --no-token.
+Status set_tokens(const ServeArguments& arguments, net::ServerOptions* options) {
+  if (arguments.no_token) return {};
+  auto token = arguments.token_file.empty() ? net::make_token() : token_from(arguments.token_file);
+  if (!token) return token.error();
+  options->token = std::move(*token);
+  if (arguments.viewer_token_file.empty()) return {};
+  auto viewer_token = token_from(arguments.viewer_token_file);
+  if (!viewer_token) return viewer_token.error();
+  options->viewer_token = std::move(*viewer_token);
+  return {};
 }
 
 int serve(const ServeArguments& arguments) {
@@ -94,8 +105,8 @@ int serve(const ServeArguments& arguments) {
   terrain::turn_network_off();
   server::draw_on_the_asking_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("overfly"));
-  auto token = token_of(arguments);
-  if (!token) return report(token.error());
+  net::ServerOptions options;
+  if (const Status status = set_tokens(arguments, &options); !status) return report(status.error());
   server::RunManagerOptions manager_options;
   manager_options.runs_folder = arguments.runs;
   manager_options.sweeps_folder = arguments.sweeps;
@@ -120,7 +131,6 @@ int serve(const ServeArguments& arguments) {
   if (!runs) return report(runs.error());
   server::ViewService views(**runs);
 
-  net::ServerOptions options;
   for (const std::string& text : arguments.cameras) {
     auto camera = server::parse_live_address(text, "--allow-camera");
     if (!camera) return report(camera.error());
@@ -128,7 +138,6 @@ int serve(const ServeArguments& arguments) {
   }
   options.address = arguments.address;
   options.port = arguments.port;
-  options.token = std::move(*token);
   options.allowed_hosts = arguments.allowed_hosts;
   options.web_folder = arguments.web.empty() ? web_folder() : fs::path(arguments.web);
   options.frame_cache_gib = arguments.frame_cache_gib;
@@ -142,6 +151,9 @@ int serve(const ServeArguments& arguments) {
     spdlog::warn("the dashboard is not built (web/dist): only REST and WebSocket are served");
   }
   std::cout << "Overfly is at " << (*server)->url() << std::endl;
+  if (const std::string url = (*server)->viewer_url(); !url.empty()) {
+    std::cout << "For looking only: " << url << std::endl;
+  }
   wait_for_stop_signal();
   // First of all: the farewell to viewers and the ends of sweeps and studies take their time.
   (*runs)->cancel_all();
@@ -205,9 +217,15 @@ void add_serve_command(CLI::App& app, int& exit_code) {
       "--token-file",
       arguments->token_file,
       "File with the token that clients must show, one line; created if absent");
+  CLI::Option* viewer_token_file = command->add_option(
+      "--viewer-token-file",
+      arguments->viewer_token_file,
+      "File with the token of viewers, who may look at everything and change nothing; created if "
+      "absent");
   command
       ->add_flag("--no-token", arguments->no_token, "Require no token; only on a loopback address")
-      ->excludes(token_file);
+      ->excludes(token_file)
+      ->excludes(viewer_token_file);
   command
       ->add_option("--allow-host",
                    arguments->allowed_hosts,

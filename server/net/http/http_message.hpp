@@ -11,11 +11,18 @@
 
 namespace overfly::net {
 
+/// What a client may do.
+enum class Access {
+  kOperator,  ///< everything
+  kViewer,    ///< look at everything, and change nothing
+};
+
 struct HttpRequest {
   std::string method;                          ///< upper-case
   std::string target;                          ///< as sent: path and query, percent-encoded
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
+  Access access = Access::kOperator;  ///< of the token that it shows
   /// Set when nobody waits for the answer any more; null if that is not watched.
   std::shared_ptr<std::atomic<bool>> abandoned{};
 

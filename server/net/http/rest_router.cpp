@@ -75,6 +75,22 @@ void RestRouter::add(const std::string& method,
                      std::move(handler),
                      {},
                      std::move(known_query)});
+  routes_.back().changes = method != "GET";
+}
+
+void RestRouter::add_calculation(const std::string& pattern,
+                                 Handler handler,
+                                 std::vector<std::string> known_query) {
+  add("POST", pattern, std::move(handler), std::move(known_query));
+  routes_.back().changes = false;
+}
+
+bool RestRouter::changes(const HttpRequest& request) const {
+  const auto url = parse_target(request.target);
+  return url && std::any_of(routes_.begin(), routes_.end(), [&](const Route& route) {
+           return route.changes && route.method == request.method &&
+                  match(route.segments, url->segments);
+         });
 }
 
 void RestRouter::add_quick(const std::string& pattern, Handler handler) {

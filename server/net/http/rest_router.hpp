@@ -44,6 +44,7 @@ class RestRouter {
     Receiver receiver;               ///< instead of a handler
     std::vector<std::string> query;  ///< accepted parameters
     bool quick = false;              ///< does not block: no disk, no other thread
+    bool changes = false;            ///< something on the server, for everybody
   };
 
   /// @param report  called with exceptions of handlers and the request that caused them
@@ -54,6 +55,13 @@ class RestRouter {
            const std::string& pattern,
            Handler handler,
            std::vector<std::string> known_query = {});
+  /// As add, for a POST that only calculates: a GET whose request is too long for an address.
+  void add_calculation(const std::string& pattern,
+                       Handler handler,
+                       std::vector<std::string> known_query = {});
+  /// Whether a request would change something on the server: any but GET and HEAD of a known route
+  /// that does not only calculate.
+  [[nodiscard]] bool changes(const HttpRequest& request) const;
   /// As add, for a GET that does not block and need not wait behind those that do.
   void add_quick(const std::string& pattern, Handler handler);
   [[nodiscard]] bool is_quick(const HttpRequest& request) const;

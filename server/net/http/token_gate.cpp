@@ -81,28 +81,41 @@ std::string token_cookie_name(const std::string& host_header) {
   return "overfly_" + (is_port ? port : "80");
 }
 
-bool TokenGate::has_token(const HttpRequest& request) const {
+std::optional<Access> TokenGate::access_by(std::string_view shown) const {
+  const bool is_operator = same_token(shown, operator_token_);
+  const bool is_viewer = !viewer_token_.empty() && same_token(shown, viewer_token_);
+  if (is_operator) return Access::kOperator;
+  return is_viewer ? std::optional(Access::kViewer) : std::nullopt;
+}
+
+std::optional<Access> TokenGate::access_by_headers(const HttpRequest& request) const {
+  std::optional<Access> most;
+  const auto take = [&](std::string_view shown) {
+    const std::optional<Access> access = access_by(shown);
+    if (access && most != Access::kOperator) most = access;
+  };
   const std::string authorization = request.header("authorization");
-  bool found = starts_with_any_case(authorization, kBearer) &&
-               same_token(std::string_view(authorization).substr(kBearer.size()), token_);
-  for_each_cookie(request.header("cookie"),
-                  token_cookie_name(request.header("host")),
-                  [&](std::string_view value) { found = same_token(value, token_) || found; });
-  return found;
+  if (starts_with_any_case(authorization, kBearer)) {
+    take(std::string_view(authorization).substr(kBearer.size()));
+  }
+  for_each_cookie(request.header("cookie"), token_cookie_name(request.header("host")), take);
+  return most;
 }
 
 bool TokenGate::is_shown_in_query(const HttpRequest& request) const {
-  if (token_.empty()) return false;
+  if (operator_token_.empty()) return false;
   std::string target = request.target;
   const auto shown = take_query_parameter(&target, kParameter);
-  return shown && same_token(token_in(*shown), token_);
+  return shown && access_by(token_in(*shown));
 }
 
 std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
   const auto shown = take_query_parameter(&request->target, kParameter);
-  if (token_.empty()) return std::nullopt;
-  const bool by_query = shown && same_token(token_in(*shown), token_);
-  if (!by_query && !has_token(*request)) return token_refusal(*request, shown.has_value());
+  if (operator_token_.empty()) return std::nullopt;
+  const auto by_query = shown ? access_by(token_in(*shown)) : std::nullopt;
+  const auto access = by_query ? by_query : access_by_headers(*request);
+  if (!access) return token_refusal(*request, shown.has_value());
+  request->access = *access;
   const bool reads = request->method == "GET" || request->method == "HEAD";
   if (!shown || !reads || is_api(*request)) return std::nullopt;
   HttpResponse response;
@@ -113,7 +126,9 @@ std::optional<HttpResponse> TokenGate::check(HttpRequest* request) const {
     // Without a path the cookie is for the folder of the address in the browser, with its prefix.
     response.headers.emplace_back(
         "Set-Cookie",
-        token_cookie_name(request->header("host")) + "=" + token_ + "; HttpOnly; SameSite=Strict");
+        token_cookie_name(request->header("host")) + "=" +
+            (*by_query == Access::kOperator ? operator_token_ : viewer_token_) +
+            "; HttpOnly; SameSite=Strict");
   }
   return response;
 }

@@ -96,8 +96,8 @@ void add_mission_routes(RestRouter* router, const MissionRoutes& routes) {
                                   return server::mission_plan(*scenario);
                                 });
               });
-  router->add(
-      "POST", "/api/v1/missions/report", [routes](const RouteCall& call, const Respond& respond) {
+  router->add_calculation(
+      "/api/v1/missions/report", [routes](const RouteCall& call, const Respond& respond) {
         if (auto refused = not_json(call.request)) {
           respond(std::move(*refused));
           return;

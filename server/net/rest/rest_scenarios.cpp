@@ -146,10 +146,9 @@ void add_scenario_routes(RestRouter* router, RunManager* runs, const ReadingRout
               return extent_json(*extent);
             });
       });
-  router->add(
-      "POST", "/api/v1/scenario-check", [runs](const RouteCall& call, const Respond& respond) {
-        respond(check(runs, call));
-      });
+  router->add_calculation(
+      "/api/v1/scenario-check",
+      [runs](const RouteCall& call, const Respond& respond) { respond(check(runs, call)); });
   router->add("GET", "/api/v1/scenario-schema", [](const RouteCall&, const Respond& respond) {
     respond(json_text_response(server::scenario_schema_text()));
   });

@@ -200,11 +200,10 @@ void add_world_routes(RestRouter* router, const WorldRoutes& routes) {
                 answer_tile(routes, call, respond);
               },
               {"version"});
-  router->add("POST",
-              "/api/v1/worlds/{name}/heights",
-              [routes](const RouteCall& call, const Respond& respond) {
-                answer_heights(routes, call, respond);
-              });
+  router->add_calculation("/api/v1/worlds/{name}/heights",
+                          [routes](const RouteCall& call, const Respond& respond) {
+                            answer_heights(routes, call, respond);
+                          });
 }
 
 }  // namespace overfly::net

@@ -112,6 +112,7 @@ void Viewer::greet(const std::string& connection_name) {
   port_.send_text(to_text({{"type", "hello"},
                            {"protocol", kProtocol},
                            {"server", std::string("overfly ") + OVERFLY_VERSION},
+                           {"access", access_ == Access::kViewer ? "viewer" : "operator"},
                            {"connection", connection_name}}));
 }
 

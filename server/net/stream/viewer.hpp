@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/net/http/http_message.hpp"
 #include "server/net/stream/client_message.hpp"
 #include "server/net/stream/picture_streams.hpp"
 #include "server/net/stream/playback_clock.hpp"
@@ -20,7 +21,9 @@ namespace overfly::net {
 class Viewer final : public StreamClient {
  public:
   /// @param port  must outlive the viewer
-  explicit Viewer(ViewerPort& port) : port_(port) {}
+  /// @param access  which `hello` states: a page offers no changes to one who may not make them
+  explicit Viewer(ViewerPort& port, Access access = Access::kOperator)
+      : port_(port), access_(access) {}
 
   /// Sends `hello`.
   void greet(const std::string& connection_name) override;
@@ -73,6 +76,7 @@ class Viewer final : public StreamClient {
   void pump_pictures(std::int64_t now_ns);
 
   ViewerPort& port_;
+  Access access_;
   std::optional<Opening> opening_;
   std::deque<std::string> waiting_;  ///< messages received after the `watch` in progress
   std::vector<std::unique_ptr<RunWatch>> watches_;  ///< in the order of their commands

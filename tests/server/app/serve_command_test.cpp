@@ -69,6 +69,18 @@ TEST(ServeCommand, KeepsItsTokenInAFile) {
   EXPECT_THAT(err, Not(HasSubstr("a-token-of-our-own")));
 }
 
+TEST(ServeCommand, PrintsTheAddressOfViewersToo) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "viewers").string();
+  const std::string printed = printed_by_serve({"--viewer-token-file", file});
+  EXPECT_THAT(printed, MatchesRegex("Overfly is at [^\n]*\nFor looking only: [^\n]*\n"));
+  EXPECT_THAT(printed, HasSubstr("/?token=" + read_text(file)));
+  EXPECT_THAT(refused_by_serve({"--token-file", file, "--viewer-token-file", file}),
+              HasSubstr("must differ"));
+  EXPECT_THAT(refused_by_serve({"--no-token", "--viewer-token-file", file}),
+              HasSubstr("--viewer-token-file"));
+}
+
 TEST(ServeCommand, RefusesTokenFilesThatHoldNone) {
   const TemporaryFolder folder;
   const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tests/server/net/test_client.hpp"
 #include "tests/server/net/test_server.hpp"
@@ -106,6 +107,63 @@ TEST(Access, TheTokenIsNeitherLoggedNorRepeated) {
   EXPECT_THAT(server.log(), Not(HasSubstr(kToken)));
 }
 
+/// POST requests that only calculate.
+constexpr std::array<const char*, 6> kCalculations = {"/api/v1/scenario-check",
+                                                      "/api/v1/sweep-check",
+                                                      "/api/v1/missions/report",
+                                                      "/api/v1/worlds/{name}/heights",
+                                                      "/api/v1/evaluations",
+                                                      "/api/v1/sweeps/{name}/comparison"};
+
+TEST(Access, AViewerReadsEverythingAndChangesNothing) {
+  net::ServerOptions options;
+  options.token = kToken;
+  options.viewer_token = "viewer-0123456789abcdef";
+  TestServer server(options);
+  const Headers viewer = {{"Authorization", "Bearer " + options.viewer_token}};
+  const std::string run = server.fly("tiny");
+  const json api = openapi();
+  int refused = 0;
+  for (const auto& [pattern, operations] : api.at("paths").items()) {
+    std::string path = pattern;
+    if (const std::size_t id = path.find("{id}"); id != std::string::npos) path.replace(id, 4, run);
+    for (const auto& [name, operation] : operations.items()) {
+      if (name == "parameters") continue;
+      std::string method = name;
+      std::transform(method.begin(), method.end(), method.begin(), ::toupper);
+      const bool reads =
+          method == "GET" ||
+          std::find(kCalculations.begin(), kCalculations.end(), pattern) != kCalculations.end();
+      const Answer answer = ask(server.port(), method, path, "{}", viewer);
+      EXPECT_NE(answer.status, 401) << method << " " << path;
+      EXPECT_EQ(answer.status == 403, !reads) << method << " " << path << answer.body;
+      if (reads) continue;
+      ++refused;
+      EXPECT_EQ(json::parse(answer.body).at("error").at("code"), "read_only") << path;
+      EXPECT_TRUE(operation.at("responses").contains("403")) << path;
+    }
+  }
+  EXPECT_GE(refused, 20);
+  EXPECT_EQ(ask(server.port(), "GET", "/api/v1/runs/" + run, "", viewer).status, 200);
+  EXPECT_EQ(server.runs().runs().size(), 1U);
+  // The body that never comes is not waited for.
+  EXPECT_THAT(exchange_raw(server.port(),
+                           "POST /api/v1/logs?name=a.bin HTTP/1.1\r\nHost: localhost\r\n"
+                           "Authorization: Bearer viewer-0123456789abcdef\r\n"
+                           "Content-Length: 500000\r\n\r\n"),
+              StartsWith("HTTP/1.1 403"));
+}
+
+TEST(Access, TheStreamStatesWhatItsClientMayDo) {
+  net::ServerOptions options;
+  options.token = kToken;
+  options.viewer_token = "viewer-0123456789abcdef";
+  TestServer server(options);
+  const Headers viewer = {{"Authorization", "Bearer " + options.viewer_token}};
+  EXPECT_EQ(WebSocketClient(server.port(), {kShown, 0}).wait_for("hello").at("access"), "operator");
+  EXPECT_EQ(WebSocketClient(server.port(), {viewer, 0}).wait_for("hello").at("access"), "viewer");
+}
+
 TEST(Access, TheInterfaceDescribesIt) {
   const json api = openapi();
   const json schemes = api.at("components").at("securitySchemes");
@@ -128,6 +186,14 @@ TEST(Access, AServerThatOthersReachNeedsAToken) {
   }
   options.address = "127.0.0.1";
   options.token = "short";
+  EXPECT_FALSE(net::Server::start(options, first.runs(), first.views()));
+  for (const char* viewer_token : {"short", kToken}) {
+    options.token = kToken;
+    options.viewer_token = viewer_token;
+    EXPECT_FALSE(net::Server::start(options, first.runs(), first.views())) << viewer_token;
+  }
+  options.token.clear();
+  options.viewer_token = kToken;
   EXPECT_FALSE(net::Server::start(options, first.runs(), first.views()));
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "server/net/http/access_token.hpp"
 
 namespace overfly::net {
@@ -172,6 +174,47 @@ TEST(TokenGate, AnswersBrowsersWithAPageAndProgramsWithJson) {
     EXPECT_THAT(answer.body, Not(HasSubstr(kGateToken)));
     EXPECT_THAT(answer.body, Not(HasSubstr("ABCDEF__")));
   }
+}
+
+constexpr const char* kViewerToken = "viewer-0123456789abcdef";
+
+/// What a request may do at a server with both tokens; empty if it is not served.
+std::optional<Access> access_of(HttpRequest request) {
+  const TokenGate gate(kGateToken, kViewerToken);
+  return gate.check(&request) ? std::nullopt : std::optional(request.access);
+}
+
+TEST(TokenGate, KnowsWhoMayOnlyLook) {
+  const std::string ours = kGateToken;
+  const std::string theirs = kViewerToken;
+  const std::string api = "/api/v1/runs";
+  EXPECT_EQ(access_of(get_from_host(api + "?token=" + theirs)), Access::kViewer);
+  EXPECT_EQ(access_of(get_from_host(api, {{"authorization", "Bearer " + theirs}})),
+            Access::kViewer);
+  EXPECT_EQ(access_of(get_from_host("/", {{"cookie", "overfly_8480=" + theirs}})), Access::kViewer);
+  EXPECT_EQ(access_of(get_from_host(api + "?token=" + ours)), Access::kOperator);
+  EXPECT_EQ(access_of(get_from_host(api + "?token=" + theirs + "x")), std::nullopt);
+  EXPECT_EQ(access_of(get_from_host(api)), std::nullopt);
+  // Of both, the one in the address counts, otherwise the operator's.
+  const std::map<std::string, std::string> operators_cookie = {{"cookie", "overfly_8480=" + ours}};
+  EXPECT_EQ(access_of(get_from_host(api + "?token=" + theirs, operators_cookie)), Access::kViewer);
+  EXPECT_EQ(
+      access_of(get_from_host(api,
+                              {{"cookie", "overfly_8480=" + theirs + "; overfly_8480=" + ours},
+                               {"authorization", "Bearer " + theirs}})),
+      Access::kOperator);
+  // Without a viewers' token an empty one is none.
+  HttpRequest request = get_from_host("/?token=");
+  EXPECT_EQ(TokenGate(kGateToken).check(&request)->status, 401);
+}
+
+TEST(TokenGate, GivesAViewersBrowserTheViewersCookie) {
+  HttpRequest request = get_from_host(std::string("/?token=") + kViewerToken);
+  const auto response = TokenGate(kGateToken, kViewerToken).check(&request);
+  ASSERT_TRUE(response);
+  EXPECT_EQ(response->status, 303);
+  EXPECT_THAT(header(*response, "Set-Cookie"),
+              HasSubstr(std::string("overfly_8480=") + kViewerToken + ";"));
 }
 
 TEST(TokenGate, NamesItsCookieByThePort) {

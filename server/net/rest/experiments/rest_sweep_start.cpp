@@ -190,22 +190,22 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
                 respond(json_or_error(sweeps->document(call.path.at("name"))));
               });
   const auto checks = std::make_shared<std::atomic<int>>(0);
-  router->add("POST",
-              "/api/v1/sweep-check",
-              [routes, sweeps, checks](const RouteCall& call, const Respond& respond) {
-                const auto taken = take_slot(checks, kMostChecks);
-                if (!taken) {
-                  return respond(error_response(
-                      503, "too_many_checks", "other sweeps are being checked: try again soon"));
-                }
-                answer_sweep_request(routes,
-                                     Asks::kCheck,
-                                     call,
-                                     respond,
-                                     [sweeps, taken](const SweepBody& body, Cancel cancel) {
-                                       return check_sweep(*sweeps, body, cancel);
-                                     });
-              });
+  router->add_calculation(
+      "/api/v1/sweep-check",
+      [routes, sweeps, checks](const RouteCall& call, const Respond& respond) {
+        const auto taken = take_slot(checks, kMostChecks);
+        if (!taken) {
+          return respond(error_response(
+              503, "too_many_checks", "other sweeps are being checked: try again soon"));
+        }
+        answer_sweep_request(routes,
+                             Asks::kCheck,
+                             call,
+                             respond,
+                             [sweeps, taken](const SweepBody& body, Cancel cancel) {
+                               return check_sweep(*sweeps, body, cancel);
+                             });
+      });
   router->add(
       "POST", "/api/v1/sweeps", [routes, sweeps](const RouteCall& call, const Respond& respond) {
         answer_sweep_request(

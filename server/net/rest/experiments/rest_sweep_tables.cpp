@@ -233,21 +233,18 @@ void add_sweep_table_routes(RestRouter* router, const SweepRoutes& routes) {
                         Cancel cancel) { return tables_of(routes, name, query, cancel); });
               },
               {"format", "published", "as", "margin_percent"});
-  router->add("POST",
-              "/api/v1/sweeps/{name}/comparison",
-              [routes](const RouteCall& call, const Respond& respond) {
-                if (auto refused = not_json(call.request)) return respond(std::move(*refused));
-                auto body = comparison_body(call.request.body);
-                if (!body) return respond(error_response(body.error()));
-                read_and_answer(
-                    routes.readers,
-                    "two sweeps",
-                    call,
-                    respond,
-                    [routes, name = call.path.at("name"), body = std::move(*body)](Cancel cancel) {
-                      return comparison_of(routes, name, body, cancel);
-                    });
-              });
+  router->add_calculation(
+      "/api/v1/sweeps/{name}/comparison", [routes](const RouteCall& call, const Respond& respond) {
+        if (auto refused = not_json(call.request)) return respond(std::move(*refused));
+        auto body = comparison_body(call.request.body);
+        if (!body) return respond(error_response(body.error()));
+        read_and_answer(routes.readers,
+                        "two sweeps",
+                        call,
+                        respond,
+                        [routes, name = call.path.at("name"), body = std::move(*body)](
+                            Cancel cancel) { return comparison_of(routes, name, body, cancel); });
+      });
 }
 
 }  // namespace overfly::net

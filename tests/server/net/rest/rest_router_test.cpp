@@ -47,6 +47,22 @@ TEST(RestRouter, MatchesPathsAndDecodesWhatTheyHold) {
   EXPECT_EQ(ask(router, "POST", "/runs/a/cancel").body, "a");
 }
 
+TEST(RestRouter, KnowsWhichRequestsChangeSomething) {
+  RestRouter router = example();
+  router.add_calculation("/check/{id}", [](const RouteCall&, const Respond&) {});
+  router.add_upload("/logs", {});
+  const auto changes = [&](const std::string& method, const std::string& target) {
+    return router.changes({method, target, {}, ""});
+  };
+  EXPECT_TRUE(changes("DELETE", "/runs/a"));
+  EXPECT_TRUE(changes("POST", "/runs/a%20b/cancel?x=y"));
+  EXPECT_TRUE(changes("POST", "/logs"));
+  EXPECT_FALSE(changes("GET", "/runs/a"));
+  EXPECT_FALSE(changes("HEAD", "/runs/a"));
+  EXPECT_FALSE(changes("POST", "/check/a"));
+  EXPECT_FALSE(changes("POST", "/runs/a")) << "there is none";
+}
+
 TEST(RestRouter, TellsUnknownPathsFromWrongMethods) {
   const RestRouter router = example();
   EXPECT_EQ(ask(router, "GET", "/runs").status, 404);
