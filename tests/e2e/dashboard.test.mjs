@@ -307,7 +307,7 @@ describe('the dashboard', { skip, timeout: 900_000 }, () => {
     await dashboard.field('pacing').selectOption('real_time');
     await dashboard.chooseEstimators();
     const second = await dashboard.launch();
-    await dashboard.untilFrames(['camera', 'scene'], 10);
+    await dashboard.untilFrames(['camera', 'scene'], 10, 90_000);
     const stop = dashboard.page.locator(
       `.run[data-run="${second}"] button[aria-label="Stop this run"]`,
     );
