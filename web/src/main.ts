@@ -3,6 +3,7 @@ import 'dockview-core/dist/styles/dockview.css';
 import 'uplot/dist/uPlot.min.css';
 import './styles/themes.css';
 import './styles/base.css';
+import './styles/access.css';
 import './styles/layout.css';
 import './styles/dock.css';
 import './styles/panels.css';

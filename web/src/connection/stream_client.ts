@@ -2,6 +2,7 @@
 // sends them again after every reconnection.
 import { backoffDelay_ms } from './backoff';
 import type {
+  Access,
   ClientMessage,
   PictureStream,
   Resume,
@@ -29,7 +30,7 @@ export interface Timers {
 
 export type ConnectionState =
   | { status: 'connecting'; attempt: number }
-  | { status: 'open'; server: string }
+  | { status: 'open'; server: string; access: Access }
   /** `reason`: why the server rejected this viewer, if known. */
   | { status: 'waiting'; attempt: number; delay_ms: number; reason?: string }
   /** The server rejects this browser's token: the page must be reloaded. */
@@ -281,7 +282,8 @@ export class StreamClient {
     }
     this.greeted = true;
     this.attempt = 0;
-    this.options.listener.onState({ status: 'open', server: message.server });
+    const access = message.access === 'viewer' ? 'viewer' : 'operator';
+    this.options.listener.onState({ status: 'open', server: message.server, access });
     if (Object.keys(this.view).length > 0) this.send({ type: 'view', ...this.view });
     if (this.runs.size === 0) return;
     for (const [run, offset_ns] of this.runs) this.watch(run, offset_ns);

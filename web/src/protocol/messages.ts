@@ -3,6 +3,9 @@ import type { EstimatorStatus, Metrics, StreamedRun } from './rest_types';
 
 export const kProtocolVersion = 2;
 
+/** What a browser may do: everything, or only look. */
+export type Access = 'operator' | 'viewer';
+
 export type SceneMode = 'chase' | 'orbit' | 'top' | 'onboard' | 'free';
 
 export type ScenePart =
@@ -184,7 +187,8 @@ export interface PictureInfo {
 }
 
 export type ServerMessage =
-  | { type: 'hello'; protocol: number; server: string; connection: string }
+  /** `access` is absent from older servers, which have operators only. */
+  | { type: 'hello'; protocol: number; server: string; connection: string; access?: string }
   | { type: 'ok'; request?: number }
   | {
       type: 'error';

@@ -10,6 +10,8 @@ export interface Command {
   words?: string;
   /** Keys that do the same. */
   keys?: string;
+  /** It starts or changes something on the server: a viewer is not offered it. */
+  changes?: true;
   run: () => void;
 }
 

@@ -225,6 +225,7 @@ export class Session implements StreamListener {
     if (state.status === 'open') {
       this.subscribed = kNothingSubscribed;
       this.pictures.clear();
+      this.store.setAccess(state.access);
     }
     this.store.change('connection');
   }

@@ -1,5 +1,6 @@
 // The whole state of the screen in one place, and notification of its changes.
 import type { ConnectionState } from '../connection/stream_client';
+import type { Access } from '../protocol/messages';
 import type { FieldError } from '../protocol/field_errors';
 import type { PixelAnswer, PixelQuestion } from '../protocol/pixel_types';
 import type {
@@ -51,6 +52,8 @@ const kNoRates: ReadonlyMap<string, PictureRate> = new Map();
 
 export class State {
   connection: ConnectionState = { status: 'connecting', attempt: 1 };
+  /** As the server said last; it stays while the connection is lost. */
+  access: Access = 'operator';
   /** null until read. */
   scenarios: ScenarioEntry[] | null = null;
   runs: Run[] | null = null;
@@ -116,6 +119,11 @@ export class State {
   studyPage: StudyPage = initialStudyPage();
   /** The pages in the order in which they were opened; some are closed again. */
   private opened: readonly { open: boolean }[] = [];
+
+  /** Whether this browser may start and change something on the server. */
+  get mayChange(): boolean {
+    return this.access === 'operator';
+  }
 
   /** The pages over the dashboard, which cover it while they are open. */
   get pages(): readonly { open: boolean }[] {
@@ -273,6 +281,13 @@ export class Store {
     const quiet = this.changed.size === 0;
     for (const topic of topics) this.changed.add(topic);
     if (quiet) this.listener?.();
+  }
+
+  /** Everything may look different then. */
+  setAccess(access: Access): void {
+    if (this.state.access === access) return;
+    this.state.access = access;
+    this.change(...kTopicNames);
   }
 
   /** The topics changed since the last call. */

@@ -5,7 +5,7 @@ import { icon } from './icons';
 
 /** @param what  "the log NAME", for people */
 export function deleteButton(name: string, what: string, remove: () => void): HTMLElement {
-  const button = h('button', { class: 'icon-button', type: 'button' });
+  const button = h('button', { class: 'icon-button', type: 'button', 'data-changes': true });
   const show = (asked: boolean) => {
     button.classList.toggle('danger', asked);
     button.title = asked ? `Click again to delete ${what} for good` : `Delete ${what}`;

@@ -96,6 +96,7 @@ export class HeaderBar implements View {
       pagesMenu(context),
       this.layouts.root,
       this.themes.root,
+      viewOnlyChip(),
       this.connection,
       commands,
       help,
@@ -190,6 +191,22 @@ export class HeaderBar implements View {
     show();
     this.countdown = window.setInterval(show, 500);
   }
+}
+
+function viewOnlyChip(): HTMLElement {
+  return h(
+    'span',
+    {
+      class: 'chip view-only',
+      'data-role': 'view-only',
+      'data-viewer-only': true,
+      tabindex: 0,
+      title:
+        "This page was opened with the viewer's address: everything can be looked at, played, compared " +
+        "and saved on this computer. Starting and changing flights need the operator's address.",
+    },
+    'View only',
+  );
 }
 
 /** On a wide screen its sheet is a row of the bar, and it has no opener (layout.css, narrow.css). */

@@ -5,6 +5,7 @@ import { fieldOfError, fieldsOf, fieldText, kUsualScenario } from '../store/laun
 import type { FieldSpec } from '../store/launch_form';
 import { draftOf } from '../store/scenario/draft';
 import type { Topic } from '../store/state';
+import { viewerNote, wordsFor } from './access';
 import { h, rebuild, setAttribute, setText } from './dom';
 import { makePanel } from './panel';
 import { prepareStudy } from './studies/prepare_study';
@@ -39,7 +40,11 @@ export class Launcher implements View {
     },
     kEditLabel,
   );
-  private readonly button = h('button', { class: 'primary', type: 'submit' }, 'Launch flight');
+  private readonly button = h(
+    'button',
+    { class: 'primary', type: 'submit', 'data-changes': true },
+    'Launch flight',
+  );
   private fields: Field[] = [];
   private documentShown: object | null = null;
 
@@ -64,7 +69,14 @@ export class Launcher implements View {
       this.description,
       this.fieldArea,
       this.errors,
-      h('div', { class: 'launch-buttons' }, this.button, this.editor, this.studyButtons()),
+      h(
+        'div',
+        { class: 'launch-buttons' },
+        this.button,
+        this.editor,
+        this.studyButtons(),
+        viewerNote(),
+      ),
     );
     this.keepRoom();
     this.editor.addEventListener('click', () => void context.scenarios.openEditor());
@@ -79,7 +91,7 @@ export class Launcher implements View {
           title: 'Flight logs: look at them, upload them, fly them',
           onclick: () => void this.context.logs.open(),
         },
-        'Fly a log',
+        ...wordsFor('Fly a log', 'Flight logs'),
       ),
       h(
         'button',
@@ -87,6 +99,7 @@ export class Launcher implements View {
           class: 'tab',
           type: 'button',
           'data-role': 'open-connect',
+          'data-changes': true,
           title: 'Fly what an autopilot reports: simulated or real, by its address',
           onclick: () => this.context.connect.open(),
         },
@@ -98,7 +111,7 @@ export class Launcher implements View {
   private studyButtons(): HTMLElement {
     return h(
       'div',
-      { class: 'launch-studies' },
+      { class: 'launch-studies', 'data-changes': true },
       this.studyButton('predict', 'Predict risk', 'Where an estimator is likely to be lost'),
       this.studyButton('hunt', 'Hunt the worst flight', 'Search within limits of some fields'),
     );

@@ -71,8 +71,8 @@ export function acceptFiles(context: Context): void {
     if (files.length === 0) return;
     const { scorePage, calibrationPage, missionPage } = context.store.state;
     if (missionPage.open && files[0] !== undefined) void context.missions.import(files[0]);
-    else if (calibrationPage.open) void context.calibration.send(files);
-    else if (scorePage.open) void context.scores.send(files);
+    else if (calibrationPage.open) upload(context, () => context.calibration.send(files));
+    else if (scorePage.open) upload(context, () => context.scores.send(files));
     else void acceptLayoutOrLogs(context, files);
   });
 }
@@ -83,6 +83,14 @@ async function acceptLayoutOrLogs(context: Context, files: File[]): Promise<void
     await context.layoutExchange.import(only);
     return;
   }
-  await context.logs.open();
-  await context.logs.send(files);
+  upload(context, async () => {
+    await context.logs.open();
+    await context.logs.send(files);
+  });
+}
+
+/** Layouts and missions of files stay in the browser; all else goes to the server. */
+function upload({ notices, store }: Context, send: () => Promise<void>): void {
+  if (store.state.mayChange) void send();
+  else notices.error("Uploading needs the operator's address.");
 }

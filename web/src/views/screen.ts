@@ -3,6 +3,7 @@ import { Frame } from './frame/frame';
 import { HeaderBar } from './header_bar';
 import { HelpOverlay } from './commands/help_overlay';
 import { NoticesView } from './notices_view';
+import { guardChanges, showAccess } from './access';
 import { acceptFiles, makePages } from './pages';
 import { Palette } from './commands/palette';
 import { listenToKeys } from './commands/shortcuts';
@@ -28,12 +29,14 @@ export function showScreen(context: Context, place: HTMLElement): void {
   frame.fit();
   listenToKeys(context);
   acceptFiles(context);
+  guardChanges(context.store.state);
   for (const view of views) view.update(kTopics);
   context.store.onChange(() => {
     requestAnimationFrame(() => {
       const changed = context.store.take();
       // Also for panels that are hidden: plots and the 3D view follow the chosen alignment.
       if (changed.has('metrics') || changed.has('run')) void context.alignment.refresh();
+      showAccess(context.store.state.access);
       for (const view of views) view.update(changed);
     });
   });

@@ -1,5 +1,6 @@
 // The page that calibrates a camera: choices, images with their corners, and the result.
 import type { Topic } from '../../store/state';
+import { viewerNote } from '../access';
 import { h } from '../dom';
 import type { Context, View } from '../view';
 import { CaptureView } from './capture_view';
@@ -28,7 +29,7 @@ export class CalibrationPageView implements View {
       'div',
       { class: 'calibration-page', role: 'dialog', 'aria-label': 'Calibrate a camera' },
       h('header', { class: 'log-header' }, h('h2', {}, 'Calibrate a camera'), close),
-      h('div', { class: 'calibration-side' }, this.form.root, this.saved.root),
+      h('div', { class: 'calibration-side' }, viewerNote(), this.form.root, this.saved.root),
       this.capture.root,
       this.result.root,
     );

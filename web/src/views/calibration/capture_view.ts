@@ -30,6 +30,7 @@ export class CaptureView {
     'label',
     {
       class: 'calibration-check',
+      'data-changes': true,
       title: 'Takes a view when it adds to the coverage and the board is held still',
     },
     this.automatic,
@@ -123,7 +124,7 @@ export class CaptureView {
     setText(
       this.phase,
       session === null
-        ? 'Choose images and board, then start.'
+        ? this.idleText()
         : sending === null
           ? phaseText(session)
           : `Sending image ${sending.done + 1} of ${sending.total}; ${phaseText(session)}`,
@@ -142,6 +143,11 @@ export class CaptureView {
     // Keeps its place, so that the pictures do not move when the images have ended.
     this.track.style.visibility = share === null || !open ? 'hidden' : '';
     this.bar.style.width = `${100 * (share ?? 0)}%`;
+  }
+
+  private idleText(): string {
+    const { mayChange } = this.context.store.state;
+    return mayChange ? 'Choose images and board, then start.' : 'No camera is being calibrated.';
   }
 
   private content(session: CalibrationSession, image: SearchedImage): BoardPictureContent {
@@ -174,5 +180,15 @@ export class CaptureView {
 }
 
 function button(label: string, role: string, hint: string): HTMLButtonElement {
-  return h('button', { class: 'secondary', 'data-role': role, title: hint, hidden: true }, label);
+  return h(
+    'button',
+    {
+      class: 'secondary',
+      'data-role': role,
+      'data-changes': true,
+      title: hint,
+      hidden: true,
+    },
+    label,
+  );
 }

@@ -12,7 +12,7 @@ export class ResultView {
   readonly root: HTMLElement;
   private readonly estimate = h(
     'button',
-    { class: 'primary', 'data-role': 'estimate' },
+    { class: 'primary', 'data-role': 'estimate', 'data-changes': true },
     'Estimate',
   );
   private readonly summary = h('p', { class: 'calibration-summary', 'data-role': 'summary' });
@@ -30,7 +30,7 @@ export class ResultView {
     { class: 'secondary', 'data-role': 'save-calibration' },
     'Save',
   );
-  private readonly saving = h('div', { class: 'calibration-save' });
+  private readonly saving = h('div', { class: 'calibration-save', 'data-changes': true });
 
   constructor(private readonly context: Context) {
     const { calibration } = context;
@@ -141,6 +141,7 @@ export class ResultView {
   private viewRow(row: ViewRow, selected: boolean): HTMLElement {
     const box = h('input', {
       type: 'checkbox',
+      'data-changes': true,
       'aria-label': `Use view ${row.view + 1}`,
       onchange: () => void this.context.calibration.toggleView(row.view),
     });

@@ -74,6 +74,7 @@ export class SavedList {
           'button',
           {
             class: 'tab',
+            'data-changes': true,
             title: 'The next flight of the scenario in the launcher uses this camera',
             onclick: () => calibration.useInScenario(file, name),
           },

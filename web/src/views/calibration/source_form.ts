@@ -75,7 +75,7 @@ export class SourceForm {
     };
     this.root = h(
       'div',
-      { class: 'calibration-form' },
+      { class: 'calibration-form', 'data-changes': true },
       h('h3', {}, 'Images'),
       field('Source', this.kind),
       this.row('name'),

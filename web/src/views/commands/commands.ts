@@ -15,6 +15,11 @@ import type { Context } from '../view';
 const kMostListed = 500;
 
 export function commandsOf(context: Context): Command[] {
+  const { mayChange } = context.store.state;
+  return allCommands(context).filter(({ changes }) => mayChange || changes !== true);
+}
+
+function allCommands(context: Context): Command[] {
   return [
     ...layoutCommands(context),
     ...panelCommands(context),
@@ -119,10 +124,12 @@ function pageCommands({
   logs,
   missions,
   scores,
+  store,
   studies,
   sweeps,
 }: Context): Command[] {
   const group = 'Page';
+  const logsTitle = store.state.mayChange ? 'Fly a log' : 'Flight logs';
   return [
     {
       id: 'missions',
@@ -159,8 +166,14 @@ function pageCommands({
       words: 'intrinsics distortion chequerboard charuco lens',
       run: () => void calibration.open(),
     },
-    { id: 'logs', group, title: 'Fly a log', words: 'upload', run: () => void logs.open() },
-    { id: 'connect', group, title: 'Connect to an autopilot', run: () => connect.open() },
+    { id: 'logs', group, title: logsTitle, words: 'upload', run: () => void logs.open() },
+    {
+      id: 'connect',
+      group,
+      title: 'Connect to an autopilot',
+      changes: true,
+      run: () => connect.open(),
+    },
     {
       id: 'editor',
       group,
@@ -197,6 +210,7 @@ function studyCommands(context: Context): Command[] {
             group,
             title: `Explain why ${failedEstimators(run).join(', ')} failed`,
             words: 'cause reason lost',
+            changes: true as const,
             run: () => void studies.explain(run),
           },
         ]
@@ -206,6 +220,7 @@ function studyCommands(context: Context): Command[] {
       group,
       title: 'Predict where the scenario is risky',
       words: 'risk before flight map',
+      changes: true,
       run: () => prepareStudy(context, 'predict'),
     },
     {
@@ -213,6 +228,7 @@ function studyCommands(context: Context): Command[] {
       group,
       title: 'Hunt the worst flight of the scenario',
       words: 'search failure limits',
+      changes: true,
       run: () => prepareStudy(context, 'hunt'),
     },
   ];

@@ -1,6 +1,7 @@
 // How the chosen log is flown.
 import { kEstimatorChoices } from '../../store/launch_form';
 import { flyableSources } from '../../store/logs/log_flight';
+import { viewerNote } from '../access';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
 
@@ -21,7 +22,11 @@ export class LogForm {
     label,
   }));
   private readonly errors = h('div', { class: 'form-errors', role: 'alert' });
-  private readonly button = h('button', { class: 'primary', type: 'submit' }, 'Fly');
+  private readonly button = h(
+    'button',
+    { class: 'primary', type: 'submit', 'data-changes': true },
+    'Fly',
+  );
 
   constructor(private readonly context: Context) {
     this.root = h(
@@ -37,6 +42,7 @@ export class LogForm {
       ...this.rows(),
       this.errors,
       this.button,
+      viewerNote("Flying a log needs the operator's address."),
     );
     this.listen();
   }

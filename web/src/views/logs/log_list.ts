@@ -1,5 +1,6 @@
 // The logs of the server, and the upload of another one.
 import type { LogEntry } from '../../protocol/log_types';
+import { wordsFor } from '../access';
 import { deleteButton } from '../delete_button';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
@@ -58,7 +59,13 @@ export class LogListView {
       this.rows,
       this.error,
       this.uploading,
-      h('div', { class: 'upload-line' }, this.button, this.place, this.picker),
+      h(
+        'div',
+        { class: 'upload-line', 'data-changes': true },
+        this.button,
+        this.place,
+        this.picker,
+      ),
     );
   }
 
@@ -68,7 +75,8 @@ export class LogListView {
     rebuild(this.rows, JSON.stringify([list?.logs, chosen]), () => {
       if (list === null) return [h('li', { class: 'muted' }, 'Reading the logs')];
       if (list.logs.length === 0) {
-        return [h('li', { class: 'muted' }, 'No flight logs yet: upload one.')];
+        const none = wordsFor('No flight logs yet: upload one.', 'No flight logs yet.');
+        return [h('li', { class: 'muted' }, ...none)];
       }
       return list.logs.map((entry) => this.row(entry, entry.name === chosen));
     });

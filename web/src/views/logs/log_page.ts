@@ -82,7 +82,7 @@ export class LogPageView implements View {
     if (changed.has('theme')) this.repaint();
     const relevant = changed.has('logs') || changed.has('lists') || changed.has('connection');
     if (!relevant) return;
-    const { logPage } = this.context.store.state;
+    const { logPage, mayChange } = this.context.store.state;
     this.context.smoothing.refresh();
     if (!logPage.open) return;
     void this.context.worlds.refresh();
@@ -106,7 +106,8 @@ export class LogPageView implements View {
     this.residuals.show(logPage.smoothing, info, series);
     this.residuals.showSlice(slice);
     const reading = logPage.reading ? 'Reading the log' : '';
-    setText(this.message, error ?? (chosen === null ? 'Choose a log, or upload one.' : reading));
+    const choose = mayChange ? 'Choose a log, or upload one.' : 'Choose a log.';
+    setText(this.message, error ?? (chosen === null ? choose : reading));
     this.message.classList.toggle('failed', error !== null);
     this.message.hidden = this.message.textContent === '';
   }

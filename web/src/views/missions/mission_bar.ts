@@ -2,6 +2,7 @@
 import { kNewMission, MissionChoice } from '../../store/missions/mission_choice';
 import type { MissionFile, MissionFormat } from '../../store/missions/mission_exchange';
 import type { MissionPage } from '../../store/missions/mission_page';
+import { viewerNote } from '../access';
 import { h, rebuild, setText } from '../dom';
 import type { Context } from '../view';
 
@@ -31,21 +32,28 @@ export class MissionBar {
     'save',
     'Save as a scenario of the server (Ctrl S)',
     () => void this.context.missions.save(),
+    true,
   );
   private readonly copy = this.button(
     'Save a copy',
     'save-copy',
     'Save under a new name',
     () => void this.context.missions.save(true),
+    true,
   );
-  private readonly remove = this.button('Delete', 'delete', 'Delete the saved mission', () =>
-    this.askToDelete(),
+  private readonly remove = this.button(
+    'Delete',
+    'delete',
+    'Delete the saved mission',
+    () => this.askToDelete(),
+    true,
   );
   private readonly fly = h(
     'button',
     {
       class: 'primary',
       'data-role': 'mission-fly',
+      'data-changes': true,
       onclick: () => void this.context.missions.fly(),
     },
     'Fly',
@@ -112,6 +120,7 @@ export class MissionBar {
       this.undo,
       this.redo,
       this.notes,
+      viewerNote("Saving and flying need the operator's address."),
       this.fly,
       h(
         'button',
@@ -169,10 +178,23 @@ export class MissionBar {
     }, 3000);
   }
 
-  private button(label: string, role: string, title: string, run: () => void): HTMLButtonElement {
+  /** @param changes  it changes something on the server */
+  private button(
+    label: string,
+    role: string,
+    title: string,
+    run: () => void,
+    changes = false,
+  ): HTMLButtonElement {
     return h(
       'button',
-      { class: 'secondary', title, 'data-role': `mission-${role}`, onclick: run },
+      {
+        class: 'secondary',
+        title,
+        'data-role': `mission-${role}`,
+        'data-changes': changes,
+        onclick: run,
+      },
       label,
     );
   }

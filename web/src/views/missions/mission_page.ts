@@ -5,6 +5,7 @@ import { neighbour, nudged, placed, withHome } from '../../store/missions/missio
 import { itemOfNumber, kCommand } from '../../store/missions/mission_item';
 import type { MissionPage } from '../../store/missions/mission_page';
 import type { Topic } from '../../store/state';
+import { viewerNote } from '../access';
 import { h, rebuild } from '../dom';
 import type { Context, View } from '../view';
 import type { CheckGroup } from './checks';
@@ -212,7 +213,8 @@ export class MissionPageView implements View {
         const make = () => void missions.makeWorld();
         return [
           h('p', {}, 'The built-in world was not made yet.'),
-          h('button', { class: 'primary', onclick: make }, 'Make it now'),
+          h('button', { class: 'primary', 'data-changes': true, onclick: make }, 'Make it now'),
+          viewerNote("Making it needs the operator's address."),
         ];
       }
       if (world === null) return draft === null ? [] : [h('p', {}, 'Opening the world')];
@@ -254,7 +256,7 @@ export class MissionPageView implements View {
   }
 
   private onCommand({ key, shiftKey }: KeyboardEvent): boolean {
-    const { missions } = this.context;
+    const { missions, store } = this.context;
     switch (key.toLowerCase()) {
       case 'z':
         if (shiftKey) missions.redo();
@@ -264,7 +266,7 @@ export class MissionPageView implements View {
         missions.redo();
         return true;
       case 's':
-        void missions.save();
+        if (store.state.mayChange) void missions.save();
         return true;
     }
     return false;

@@ -121,6 +121,7 @@ export class RunEntries {
           title: `Explain why ${failed.join(', ')} failed`,
           'aria-label': `Explain the failure: ${run.title}`,
           'data-role': 'explain',
+          'data-changes': true,
           onclick: () => void this.context.studies.explain(run),
         },
         icon('question'),
@@ -136,6 +137,7 @@ export class RunEntries {
         title: isActive(run) ? 'Can be tagged once it has ended' : 'Tags and note',
         'aria-label': `Tags and note: ${run.title}`,
         'data-role': 'edit-notes',
+        'data-changes': true,
         disabled: isActive(run),
         onclick: () => this.actions.editNotes(run),
       },
@@ -178,6 +180,7 @@ export class RunEntries {
         title: 'Fly again with changes: its settings are shown in Launch',
         'aria-label': `Fly again with changes: ${run.title}`,
         'data-role': 'repeat',
+        'data-changes': true,
         onclick: () => void again(),
       },
       icon('repeat'),
@@ -192,6 +195,7 @@ export class RunEntries {
         title: 'Stop this run; its data so far is kept',
         'aria-label': 'Stop this run',
         'data-role': 'stop',
+        'data-changes': true,
         onclick: () => void this.context.catalogue.cancel(run.id),
       },
       icon('stop'),
@@ -206,6 +210,7 @@ export class RunEntries {
         title: asked ? 'Click again to delete this run for good' : 'Delete this run',
         'aria-label': asked ? 'Confirm deletion' : 'Delete this run',
         'data-role': 'delete',
+        'data-changes': true,
         onclick: () => {
           if (asked) void this.context.catalogue.remove(run.id);
           this.actions.confirm(asked ? null : run.id);

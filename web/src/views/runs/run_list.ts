@@ -57,7 +57,7 @@ export class RunList implements View {
     onclick: () => this.drawMore(),
   });
   /** Tags and note of the run that is being edited. */
-  private readonly notes = h('div', { class: 'run-notes', hidden: true });
+  private readonly notes = h('div', { class: 'run-notes', hidden: true, 'data-changes': true });
   /** The run whose deletion awaits confirmation. */
   private confirming: string | null = null;
   /** Entries to be drawn. */
@@ -113,7 +113,7 @@ export class RunList implements View {
     setText(this.count, some ? `${found.length} of ${all.length} runs` : '');
     this.counted.hidden = !some;
     if (runs === null) this.panel.showEmpty(listError ?? 'Reading the runs');
-    else if (runs.length === 0) this.panel.showEmpty('No runs yet. Launch a flight above.');
+    else if (runs.length === 0) this.panel.showEmpty(noRunsText(state));
     else this.panel.showEmpty(found.length === 0 ? this.nothingText() : null);
   }
 
@@ -182,4 +182,8 @@ export class RunList implements View {
       if (this.confirming === id) this.ask(null);
     }, kConfirm_ms);
   }
+}
+
+function noRunsText({ mayChange }: State): string {
+  return mayChange ? 'No runs yet. Launch a flight above.' : 'No runs yet.';
 }

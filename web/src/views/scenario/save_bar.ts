@@ -44,6 +44,7 @@ export class SaveBar {
       'form',
       {
         class: 'save-bar',
+        'data-changes': true,
         novalidate: true,
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();

@@ -11,6 +11,7 @@ import {
   sectionsOf,
 } from '../../store/scenario/sections';
 import type { State, Topic } from '../../store/state';
+import { viewerNote } from '../access';
 import { closeTopmost } from '../commands/shortcuts';
 import { h, rebuild, setText } from '../dom';
 import type { Context, View } from '../view';
@@ -45,7 +46,7 @@ export class ScenarioPageView implements View {
   private readonly done = this.button('Done', 'close-editor', () => this.desk.close());
   private readonly launch = h(
     'button',
-    { class: 'primary', type: 'button', 'data-role': 'launch-edited' },
+    { class: 'primary', type: 'button', 'data-role': 'launch-edited', 'data-changes': true },
     'Launch flight',
   );
   private readonly saveBar: SaveBar;
@@ -105,7 +106,15 @@ export class ScenarioPageView implements View {
       ),
       h('div', { class: 'editor-body' }, this.form.root, this.text),
       this.errors,
-      h('footer', { class: 'editor-foot' }, this.saveBar.root, this.undo, this.done, this.launch),
+      h(
+        'footer',
+        { class: 'editor-foot' },
+        this.saveBar.root,
+        viewerNote("Changes are checked here; saving and flying them need the operator's address."),
+        this.undo,
+        this.done,
+        this.launch,
+      ),
     );
   }
 

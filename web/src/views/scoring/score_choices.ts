@@ -44,6 +44,8 @@ export class ScoreChoices {
         'button',
         {
           class: 'secondary',
+          'data-role': 'upload-scores',
+          'data-changes': true,
           title:
             'Trajectories (TUM, KITTI together with its times.txt, EuRoC, CSV) and flight logs; they can be dropped here, too',
           onclick: () => this.file.click(),

@@ -185,6 +185,7 @@ export class ErrorPanel implements View {
       {
         class: 'explain',
         'data-role': 'explain-estimator',
+        'data-changes': true,
         'data-of': `${run.id} ${estimator}`,
         title: `Find out why ${estimator} failed: fly it again with one cause changed at a time`,
         onclick: () => void this.context.studies.explain(run, estimator),

@@ -20,6 +20,7 @@ export class StatusPanel implements View {
       class: 'tab',
       hidden: true,
       'data-role': 'explain-status',
+      'data-changes': true,
       title: 'Find out why an estimator failed: fly it again with one cause changed at a time',
       onclick: () => void this.context.studies.explain(withResults(this.context.store.state.main)),
     },

@@ -46,6 +46,7 @@ export class StudyFormView {
       {
         class: 'sweep-form study-form',
         hidden: true,
+        'data-changes': true,
         'aria-label': 'Prepare a study',
         onkeydown: (event: KeyboardEvent) => {
           if (event.key !== 'Escape') return;

@@ -21,7 +21,7 @@ const kRunStatus: Record<StudyState, string> = {
 export class StudyHead {
   readonly root: HTMLElement;
   private readonly title = h('div', { class: 'sweep-title' });
-  private readonly buttons = h('div', { class: 'sweep-buttons' });
+  private readonly buttons = h('div', { class: 'sweep-buttons', 'data-changes': true });
   private readonly progress = h('div', { class: 'sweep-progress', 'data-role': 'study-progress' });
   /** The study whose deletion awaits confirmation. */
   private confirming: string | null = null;

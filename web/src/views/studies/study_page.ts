@@ -3,6 +3,7 @@ import type { StudyEntry } from '../../protocol/study_types';
 import { isOpen } from '../../protocol/study_types';
 import type { Topic } from '../../store/state';
 import { studyDetail } from '../../store/studies/study_words';
+import { viewerNote } from '../access';
 import { h, rebuild, setAttribute, setText, setTextOf } from '../dom';
 import { KeyedList } from '../keyed_list';
 import type { Context, View } from '../view';
@@ -40,7 +41,7 @@ export class StudyPageView implements View {
         { class: 'log-list sweep-list' },
         h(
           'div',
-          { class: 'study-new' },
+          { class: 'study-new', 'data-changes': true },
           start(
             'new-explain',
             'Explain a run',
@@ -54,6 +55,7 @@ export class StudyPageView implements View {
             prepareStudy(context, 'hunt'),
           ),
         ),
+        viewerNote(),
         this.list,
       ),
       h(
@@ -86,10 +88,12 @@ export class StudyPageView implements View {
   }
 
   private messageText(): string {
-    const { error, studies, shown } = this.context.store.state.studyPage;
+    const { mayChange, studyPage } = this.context.store.state;
+    const { error, studies, shown } = studyPage;
     if (error !== null) return error;
     if (studies === null) return 'Reading';
     if (studies.length === 0) {
+      if (!mayChange) return 'There are no studies yet.';
       return 'There are no studies yet. Explain a run that failed, predict where a flight is risky, or hunt the worst flight within limits.';
     }
     if (shown === null || shown.result !== null) return '';

@@ -59,7 +59,7 @@ export class SweepFormView {
     this.fileLabel = h('label', {}, 'Sweep file', this.file);
     this.root = h(
       'section',
-      { class: 'sweep-form', hidden: true, 'aria-label': 'Prepare a sweep' },
+      { class: 'sweep-form', hidden: true, 'data-changes': true, 'aria-label': 'Prepare a sweep' },
       this.title,
       h(
         'div',

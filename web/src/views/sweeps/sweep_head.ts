@@ -19,7 +19,7 @@ const kRunStatus: Record<SweepPhase, string> = {
 export class SweepHead {
   readonly root: HTMLElement;
   private readonly title = h('div', { class: 'sweep-title' });
-  private readonly buttons = h('div', { class: 'sweep-buttons' });
+  private readonly buttons = h('div', { class: 'sweep-buttons', 'data-changes': true });
   private readonly progress = h('div', { class: 'sweep-progress', 'data-role': 'sweep-progress' });
   /** The sweep whose cancelling awaits confirmation. */
   private confirming: string | null = null;
@@ -207,4 +207,16 @@ export function stateOf({ flying, here, problem, progress, envelope }: SweepEntr
   if (problem !== null) return 'failed';
   if (progress !== null && progress.passed >= progress.most) return 'complete';
   return envelope?.found === true ? 'border found' : 'stopped';
+}
+
+/** Title, state and progress in a line of the list. */
+export function sweepDetail(sweep: SweepEntry): string {
+  const { flying, progress } = sweep;
+  const parts = [sweep.title];
+  if (flying && progress !== null && progress.most > 0) {
+    parts.push(`${stateOf(sweep)}, ${formatPercent(progress.passed / progress.most, 0)}`);
+  } else {
+    parts.push(stateOf(sweep), formatDate(sweep.changed_utc));
+  }
+  return parts.filter((part) => part !== '').join(' · ');
 }

@@ -1,6 +1,6 @@
 // The page of sweeps: their cells as matrices that fill while they fly, each cell with its flights.
 import type { SweepEntry, SweepRow, SweepState } from '../../protocol/sweep_types';
-import { formatDate, formatPercent } from '../../store/format';
+import { formatPercent } from '../../store/format';
 import type { Topic } from '../../store/state';
 import type { Matrices, Matrix, MatrixCell, SweepFigure } from '../../store/sweeps/sweep_matrix';
 import {
@@ -12,20 +12,25 @@ import {
   spreadText,
   valueText,
 } from '../../store/sweeps/sweep_matrix';
+import { viewerNote } from '../access';
 import { h, rebuild, setAttribute, setText, setTextOf } from '../dom';
 import { KeyedList } from '../keyed_list';
 import type { Context, View } from '../view';
 import { labelled, select } from './sweep_controls';
 import { EnvelopeView } from './envelope_view';
 import { SweepFormView } from './sweep_form_view';
-import { stateOf, SweepHead } from './sweep_head';
+import { sweepDetail, SweepHead } from './sweep_head';
 import { SweepResultsView } from './sweep_results_view';
 
 export class SweepPageView implements View {
   readonly root: HTMLElement;
   private readonly list = h('ul', { class: 'log-rows', 'aria-label': 'Sweeps' });
   private readonly drawn = new KeyedList(this.list);
-  private readonly add = h('button', { class: 'primary', 'data-role': 'new-sweep' }, 'New sweep');
+  private readonly add = h(
+    'button',
+    { class: 'primary', 'data-role': 'new-sweep', 'data-changes': true },
+    'New sweep',
+  );
   private readonly head: SweepHead;
   private readonly form: SweepFormView;
   private readonly tools = h('div', { class: 'sweep-tools' });
@@ -50,7 +55,7 @@ export class SweepPageView implements View {
       'div',
       { class: 'sweep-page', role: 'dialog', 'aria-label': 'Sweeps' },
       h('header', { class: 'log-header' }, h('h2', {}, 'Sweeps'), close),
-      h('div', { class: 'log-list sweep-list' }, this.add, this.list),
+      h('div', { class: 'log-list sweep-list' }, this.add, viewerNote(), this.list),
       h(
         'div',
         { class: 'sweep-centre' },
@@ -101,10 +106,12 @@ export class SweepPageView implements View {
   }
 
   private messageText(): string {
-    const { error, sweeps } = this.context.store.state.sweepPage;
+    const { mayChange, sweepPage } = this.context.store.state;
+    const { error, sweeps } = sweepPage;
     if (error !== null) return error;
     if (sweeps === null) return 'Reading';
     if (sweeps.length === 0) {
+      if (!mayChange) return 'There are no sweeps yet.';
       return 'There are no sweeps yet. Start one with New sweep, or by overfly sweep FILE --out sweeps/NAME.';
     }
     return '';
@@ -367,17 +374,6 @@ export class SweepPageView implements View {
       h('ul', {}, ...differences.map((difference) => h('li', {}, differenceText(difference)))),
     ]);
   }
-}
-
-function sweepDetail(sweep: SweepEntry): string {
-  const { flying, progress } = sweep;
-  const parts = [sweep.title];
-  if (flying && progress !== null && progress.most > 0) {
-    parts.push(`${stateOf(sweep)}, ${formatPercent(progress.passed / progress.most, 0)}`);
-  } else {
-    parts.push(stateOf(sweep), formatDate(sweep.changed_utc));
-  }
-  return parts.filter((part) => part !== '').join(' · ');
 }
 
 function axisTitle({ label, unit }: { label: string; unit: string }): string {

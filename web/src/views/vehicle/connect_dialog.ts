@@ -58,6 +58,7 @@ export class ConnectDialog implements View {
         class: 'overlay',
         hidden: true,
         'data-panel': 'connect',
+        'data-changes': true,
         onclick: (event: MouseEvent) => {
           if (event.target === this.root) this.context.connect.close();
         },
