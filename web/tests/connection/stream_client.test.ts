@@ -74,7 +74,17 @@ describe('StreamClient', () => {
     expect(socket().sent).toEqual([]);
     socket().hello();
     expect(socket().types()).toEqual(['view', 'watch', 'subscribe']);
-    expect(listener.states.at(-1)).toEqual({ status: 'open', server: 'overfly 0.1.0' });
+    expect(listener.states.at(-1)).toMatchObject({ status: 'open', server: 'overfly 0.1.0' });
+  });
+
+  it.each([
+    ['viewer', 'viewer'],
+    ['operator', 'operator'],
+    [undefined, 'operator'],
+  ])('of a server that says %s has the access %s', (said, access) => {
+    client.connect();
+    socket().hello(2, said);
+    expect(listener.states.at(-1)).toMatchObject({ status: 'open', access });
   });
 
   it('refuses a server of another protocol and does not come back', () => {

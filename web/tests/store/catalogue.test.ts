@@ -264,6 +264,16 @@ describe('Catalogue', () => {
     expect(store.state.notices.map(({ text }) => text)).toEqual(['it still runs']);
   });
 
+  it('says why a viewer may not stop a run', async () => {
+    const message = 'this address only lets you look';
+    const { store, subject } = catalogue({
+      'POST /runs/r1/cancel': () => [403, { error: { code: 'read_only', message } }],
+      'GET /runs': () => [200, { runs: [sampleRun({ status: 'running' })] }],
+    });
+    await subject.cancel('r1');
+    expect(store.state.notices).toMatchObject([{ level: 'error', text: message }]);
+  });
+
   it('shows the newest run at the first visit, but no other than the one of a link', async () => {
     const routes = {
       'GET /scenarios': () => [200, { scenarios: [] }] as [number, unknown],

@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 
 import { rateBadge } from '../../src/store/pictures/picture_rates';
+import { kTopics } from '../../src/store/state';
 import { playbackMessage, samplePlayback, sampleRun, sampleStatus } from '../support/samples';
 import { Viewing } from '../support/viewing';
 
@@ -108,6 +109,22 @@ describe('Session', () => {
     const watch = viewing.socket.sent.find(({ type }) => type === 'watch');
     expect(watch).toMatchObject({ run: 'r1', resume: { truth: 63 } });
     expect(viewing.socket.types().slice(-3)).toEqual(['speed', 'seek', 'pause']);
+  });
+
+  it('follows what the server lets it do, which stays while the connection is lost', () => {
+    const { state } = viewing.store;
+    expect(state.mayChange).toBe(true);
+    viewing.socket.lose();
+    viewing.timers.fire();
+    viewing.store.take();
+    viewing.socket.hello(2, 'viewer');
+    expect(state).toMatchObject({ access: 'viewer', mayChange: false });
+    expect(viewing.store.take()).toEqual(kTopics);
+    viewing.socket.lose();
+    expect(state.access).toBe('viewer');
+    viewing.timers.fire();
+    viewing.socket.hello(2, 'operator');
+    expect(state).toMatchObject({ access: 'operator', mayChange: true });
   });
 
   it('keeps the place of a live viewer whose run ended while the connection was lost', () => {

@@ -1,5 +1,5 @@
 import { describe, expect, it, vi } from 'vitest';
-import { clockSpan_ns, plannedEnd_ns, Store } from '../../src/store/state';
+import { clockSpan_ns, kTopics, plannedEnd_ns, Store } from '../../src/store/state';
 import { WatchedRun } from '../../src/store/watched_run';
 import { sampleRun } from '../support/samples';
 
@@ -14,6 +14,14 @@ describe('Store', () => {
     expect([...store.take()]).toEqual(['run', 'rows']);
     store.change('log');
     expect(listener).toHaveBeenCalledTimes(2);
+  });
+
+  it('redraws everything for another access, and nothing for the same', () => {
+    const store = new Store();
+    store.setAccess('operator');
+    expect(store.take().size).toBe(0);
+    store.setAccess('viewer');
+    expect(store.take()).toEqual(kTopics);
   });
 
   it('notifies a new listener of earlier changes', () => {

@@ -26,8 +26,9 @@ export class FakeSocket implements Socket {
     this.onmessage?.({ data: payload } as MessageEvent);
   }
 
-  hello(protocol = 2): void {
-    this.receive({ type: 'hello', protocol, server: 'overfly 0.1.0', connection: 'c1' });
+  /** @param access  absent as from an older server */
+  hello(protocol = 2, access?: string): void {
+    this.receive({ type: 'hello', protocol, server: 'overfly 0.1.0', connection: 'c1', access });
   }
 
   lose(code = 1006): void {

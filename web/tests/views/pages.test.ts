@@ -1,0 +1,61 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Store } from '../../src/store/state';
+import { acceptFiles } from '../../src/views/pages';
+import type { Context } from '../../src/views/view';
+
+let store: Store;
+/** What became of the files. */
+let done: string[];
+let drop: (event: unknown) => void;
+
+beforeEach(() => {
+  store = new Store();
+  done = [];
+  const addEventListener = (type: string, listener: typeof drop) => {
+    if (type === 'drop') drop = listener;
+  };
+  vi.stubGlobal('document', { addEventListener });
+  const takes = (what: string) => () => Promise.resolve(void done.push(what));
+  acceptFiles({
+    store,
+    notices: { error: (text: string) => done.push(text) },
+    logs: { open: takes('logs'), send: takes('log') },
+    scores: { send: takes('trajectory') },
+    calibration: { send: takes('image') },
+    missions: { import: takes('mission') },
+    layoutExchange: { import: takes('layout') },
+  } as unknown as Context);
+});
+afterEach(() => vi.unstubAllGlobals());
+
+function dropFile(name: string, text: string): void {
+  const dataTransfer = { types: ['Files'], files: [new File([text], name)] };
+  drop({ dataTransfer, preventDefault: () => undefined });
+}
+
+/** Drops a file where each kind is taken. */
+async function dropEverywhere(): Promise<void> {
+  const { calibrationPage, missionPage, scorePage } = store.state;
+  for (const page of [calibrationPage, scorePage, missionPage]) {
+    page.open = true;
+    dropFile('a.txt', 'x');
+    page.open = false;
+  }
+  dropFile('flight.bin', 'x');
+  dropFile('own.layouts.json', '{"overfly_layouts": 1, "layouts": []}');
+  await expect.poll(() => done.length).toBeGreaterThanOrEqual(5);
+}
+
+describe('dropped files', () => {
+  it('are taken where they belong', async () => {
+    await dropEverywhere();
+    expect(done.sort()).toEqual(['image', 'layout', 'log', 'logs', 'mission', 'trajectory']);
+  });
+
+  it('of a viewer go nowhere but into this browser', async () => {
+    store.setAccess('viewer');
+    await dropEverywhere();
+    const refusal = "Uploading needs the operator's address.";
+    expect(done.sort()).toEqual([refusal, refusal, refusal, 'layout', 'mission']);
+  });
+});
