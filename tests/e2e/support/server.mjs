@@ -47,6 +47,7 @@ export async function startServer({
   runs,
   port = 0,
   tokenFile = null,
+  viewerTokenFile = null,
   scenarios = path.join(kRoot, 'scenarios'),
   data = [],
   links = [],
@@ -57,6 +58,7 @@ export async function startServer({
 }) {
   const args = ['serve', '--port', String(port), '--runs', runs];
   if (tokenFile !== null) args.push('--token-file', tokenFile);
+  if (viewerTokenFile !== null) args.push('--viewer-token-file', viewerTokenFile);
   args.push('--scenarios', scenarios, '--web', kWeb);
   args.push('--uploads', path.join(path.dirname(runs), 'uploads'));
   args.push('--saved-scenarios', path.join(path.dirname(runs), 'saved'));

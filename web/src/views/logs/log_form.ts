@@ -59,16 +59,19 @@ export class LogForm {
       row('Lowest', 'Smallest height above the ground after the move', this.agl, 'm'),
       row('Turned', 'Turns the moved flight clockwise', this.turn, 'deg'),
       row('Geoid', 'Height of the geoid above the ellipsoid at the log’s place', this.geoid, 'm'),
-      row(
-        'Estimators',
-        'None = camera and truth only',
-        h(
-          'div',
-          { class: 'checks' },
-          ...this.boxes.map(({ box, label }) => h('label', { class: 'check' }, box, label)),
-        ),
-      ),
+      this.estimatorRow(),
     ];
+  }
+
+  private estimatorRow(): HTMLElement {
+    const checks = this.boxes.map(({ box, label }) => h('label', { class: 'check' }, box, label));
+    const made = row(
+      'Estimators',
+      'None = camera and truth only',
+      h('div', { class: 'checks' }, ...checks),
+    );
+    made.toggleAttribute('data-changes', true);
+    return made;
   }
 
   private listen(): void {
