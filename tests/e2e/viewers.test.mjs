@@ -231,8 +231,10 @@ describe('a viewer', { skip, timeout: 600_000 }, () => {
   step('is told so on a narrow screen too', async () => {
     await page.setViewportSize({ width: 360, height: 640 });
     await dashboard.untilSettled();
-    const box = await chip().boundingBox();
-    assert.ok(box.x >= 0 && box.x + box.width <= 360, 'the chip is cut off');
+    for (const part of [chip(), page.locator('.help-button')]) {
+      const { x, width } = await part.boundingBox();
+      assert.ok(x >= 0 && x + width <= 360, 'a part of the bar is cut off');
+    }
     await dashboard.screenshot('viewer_360x640');
     await page.setViewportSize(kSize);
     await dashboard.untilSettled();

@@ -28,6 +28,7 @@ function allCommands(context: Context): Command[] {
     ...themeCommands(context),
     ...shortcutCommands(context),
     ...pageCommands(context),
+    ...launchCommands(context),
     ...reportCommands(context),
     ...studyCommands(context),
     ...runCommands(context),
@@ -117,19 +118,8 @@ function shortcutCommands(context: Context): Command[] {
     }));
 }
 
-function pageCommands({
-  calibration,
-  scenarios,
-  connect,
-  logs,
-  missions,
-  scores,
-  store,
-  studies,
-  sweeps,
-}: Context): Command[] {
+function pageCommands({ calibration, missions, scores, studies, sweeps }: Context): Command[] {
   const group = 'Page';
-  const logsTitle = store.state.mayChange ? 'Fly a log' : 'Flight logs';
   return [
     {
       id: 'missions',
@@ -166,6 +156,14 @@ function pageCommands({
       words: 'intrinsics distortion chequerboard charuco lens',
       run: () => void calibration.open(),
     },
+  ];
+}
+
+/** Of the launcher. */
+function launchCommands({ connect, logs, scenarios, store }: Context): Command[] {
+  const group = 'Page';
+  const logsTitle = store.state.mayChange ? 'Fly a log' : 'Flight logs';
+  return [
     { id: 'logs', group, title: logsTitle, words: 'upload', run: () => void logs.open() },
     {
       id: 'connect',

@@ -106,15 +106,19 @@ export class ScenarioPageView implements View {
       ),
       h('div', { class: 'editor-body' }, this.form.root, this.text),
       this.errors,
-      h(
-        'footer',
-        { class: 'editor-foot' },
-        this.saveBar.root,
-        viewerNote("Changes are checked here; saving and flying them need the operator's address."),
-        this.undo,
-        this.done,
-        this.launch,
-      ),
+      this.foot(),
+    );
+  }
+
+  private foot(): HTMLElement {
+    return h(
+      'footer',
+      { class: 'editor-foot' },
+      this.saveBar.root,
+      viewerNote("Changes are checked here; saving and flying them need the operator's address."),
+      this.undo,
+      this.done,
+      this.launch,
     );
   }
 
