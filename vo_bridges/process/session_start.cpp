@@ -111,15 +111,13 @@ Status Session::greet(Clock::time_point deadline) {
 }
 
 Status Session::wait_ready(MessageType done, Clock::time_point deadline) {
-  const auto begin = Clock::now();
   for (;;) {
     Result<std::optional<Message>> message = next(deadline);
     if (!message) return message.error();
     if (!*message) {
-      const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
       return Error{ErrorCode::kInternal,
                    "the estimator was not ready after " + name_of(done) + " within " +
-                       duration_text(waited_s)};
+                       duration_text(options_.start_timeout_s)};
     }
     const Result<bool> noticed = take_notice(**message);
     if (!noticed) return noticed.error();
