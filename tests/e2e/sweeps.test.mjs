@@ -1,7 +1,7 @@
 // A sweep that is flown beside the server: its matrix fills, and a cell opens its flight.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { cpSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
@@ -376,5 +376,19 @@ describe('sweeps', { skip, timeout: 900_000 }, () => {
     await page.locator('[data-role=status]', { hasText: 'completed' }).waitFor();
     await dashboard.until((run) => location.hash.includes(run), id);
     await page.locator('[data-panel=errors] th', { hasText: 'feature' }).waitFor();
+  });
+
+  step('deletes a sweep with its flights after a confirmation', async () => {
+    await page.locator('[data-role=open-sweeps]').click();
+    await page.locator('[data-sweep=started]').click();
+    const bin = page.locator('[data-role=delete-sweep][data-of=started]');
+    await bin.click();
+    assert.equal(await bin.innerText(), 'Delete the sweep?');
+    await dashboard.screenshot('sweep_deletion_1280x800');
+    assert.ok(existsSync(path.join(folder, 'started')));
+    await bin.click();
+    await page.locator('[data-sweep=started]').waitFor({ state: 'detached' });
+    assert.ok(!existsSync(path.join(folder, 'started')));
+    await page.locator('[data-sweep=night]').waitFor();
   });
 });

@@ -13,6 +13,7 @@
 #include "server/files/whole_file.hpp"
 #include "server/record/run_folder.hpp"
 #include "server/record/run_lock.hpp"
+#include "server/runs/run_removal.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -260,6 +261,22 @@ Status SweepService::cancel(const std::string& name) {
   }
   flight_->cancel = true;
   return {};
+}
+
+Status SweepService::remove(const std::string& name) {
+  // So that it is not continued meanwhile.
+  const std::lock_guard launching(launching_);
+  const Result<Json> known = sweep_entry(folder_, name);
+  if (!known) return known.error();
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_busy() && flight_->name == name) {
+      return Error{ErrorCode::kConflict,
+                   "sweep \"" + name + "\" is flying: cancel it and wait for its end"};
+    }
+    problems_.erase(name);
+  }
+  return remove_run_folder(folder_ / name);
 }
 
 void SweepService::request_stop() {

@@ -88,6 +88,9 @@ class SweepService {
   /// Ends the flights in progress; the results stay.
   /// Errors: kNotFound; kConflict if this server does not fly it.
   [[nodiscard]] Status cancel(const std::string& name);
+  /// Deletes a sweep with the runs of its flights.
+  /// Errors: kNotFound; kConflict while it is flown, also by another process; kIo.
+  [[nodiscard]] Status remove(const std::string& name);
   /// Cancels the sweep in progress and refuses further ones.
   void request_stop();
   /// The same, and waits for its end.

@@ -66,6 +66,11 @@ export class SweepClient {
     )) as SweepComparison;
   }
 
+  /** With the runs of its flights. */
+  async remove(name: string): Promise<void> {
+    await this.rest.call('DELETE', placeOf(name));
+  }
+
   async cancel(name: string): Promise<SweepEntry> {
     return (await this.rest.call('POST', `${placeOf(name)}/cancel`)) as SweepEntry;
   }

@@ -225,6 +225,21 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
                       return continue_sweep(*sweeps, name, body, cancel);
                     });
               });
+  router->add("DELETE",
+              "/api/v1/sweeps/{name}",
+              [routes, sweeps](const RouteCall& call, const Respond& respond) {
+                respond_from_reader(
+                    routes.readers,
+                    "a sweep",
+                    call,
+                    respond,
+                    [sweeps, name = call.path.at("name")](Cancel) -> Result<HttpResponse> {
+                      if (const Status gone = sweeps->remove(name); !gone) return gone.error();
+                      HttpResponse response;
+                      response.status = 204;
+                      return response;
+                    });
+              });
   router->add(
       "POST",
       "/api/v1/sweeps/{name}/cancel",

@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/record/run_lock.hpp"
+
 namespace overfly::testing {
 namespace {
 
@@ -34,6 +36,50 @@ TEST_F(SweepRoutesTest, FliesASweepThatAClientStarts) {
   const json state = ask(server_->port(), "GET", std::string(kSweepRoute) + "/seeds").json();
   EXPECT_EQ(state.at("table").at("rows").size(), 3U);
   EXPECT_EQ(lines("calls").size(), 3U);
+}
+
+TEST_F(SweepRoutesTest, DeletesASweepWithItsFlights) {
+  const std::string route = std::string(kSweepRoute) + "/seeds";
+  block();
+  ASSERT_EQ(start("seeds").status, 201);
+  wait_for_calls(1);
+  const Answer flying = ask(server_->port(), "DELETE", route);
+  EXPECT_EQ(flying.status, 409);
+  EXPECT_THAT(flying.body, HasSubstr("cancel it"));
+  EXPECT_EQ(post_to("seeds", "cancel").status, 202);
+  unblock();
+  (void)ended("seeds");
+  EXPECT_EQ(post_to("seeds", "continue").status, 202);
+  EXPECT_EQ(ended("seeds").at("progress").at("passed"), 3);
+  const json table = ask(server_->port(), "GET", route).json().at("table");
+  const std::string run = table.at("rows").at(0).at("runs").at(0);
+  ASSERT_EQ(ask(server_->port(), "GET", "/api/v1/runs/" + run).status, 200);
+  EXPECT_EQ(ask(server_->port(), "DELETE", route).status, 204);
+  EXPECT_FALSE(fs::exists(server_->folder() / "sweeps/seeds"));
+  EXPECT_EQ(ask(server_->port(), "GET", route).status, 404);
+  EXPECT_EQ(ask(server_->port(), "GET", "/api/v1/runs/" + run).status, 404);
+  EXPECT_EQ(ask(server_->port(), "DELETE", route).status, 404);
+  EXPECT_EQ(start("seeds").status, 201) << "the name is free again";
+  (void)ended("seeds");
+}
+
+TEST_F(SweepRoutesTest, DeletesNothingElse) {
+  const fs::path folder = server_->folder() / "sweeps";
+  write_text(folder / "notes/mine.txt", "not a sweep");
+  write_text(folder / ".frame_cache/x", "");
+  for (const char* name : {"notes", ".frame_cache", "nobody", "..", "%2e%2e", "a%2fb"}) {
+    EXPECT_EQ(ask(server_->port(), "DELETE", std::string(kSweepRoute) + "/" + name).status, 404)
+        << name;
+  }
+  EXPECT_TRUE(fs::exists(folder / "notes/mine.txt"));
+  EXPECT_TRUE(fs::exists(folder / ".frame_cache/x"));
+  ASSERT_EQ(start("seeds").status, 201);
+  (void)ended("seeds");
+  const auto lock = server::RunLock::take(folder / "seeds");
+  ASSERT_TRUE(lock);
+  EXPECT_EQ(ask(server_->port(), "DELETE", std::string(kSweepRoute) + "/seeds").status, 409)
+      << "another process works on it";
+  EXPECT_TRUE(fs::exists(folder / "seeds/sweep.json"));
 }
 
 TEST_F(SweepRoutesTest, ConfinesTheProcessesOfItsFlights) {

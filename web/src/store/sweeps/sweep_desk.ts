@@ -1,5 +1,5 @@
 // Reads the sweeps of the server, again and again while their page is open or one flies; cancels
-// and continues them.
+// continues and deletes them.
 import { errorText } from '../../connection/rest_error';
 import type { SweepClient } from '../../connection/sweep_client';
 import type { SweepEntry } from '../../protocol/sweep_types';
@@ -76,6 +76,17 @@ export class SweepDesk {
       this.notices.error(errorText(error));
     }
     await this.show(name);
+  }
+
+  /** Deletes a sweep that does not fly, with its flights. */
+  async remove(name: string): Promise<void> {
+    try {
+      await this.client.remove(name);
+      if (this.page.name === name) this.forget(null);
+    } catch (error) {
+      this.notices.error(errorText(error));
+    }
+    await this.open();
   }
 
   /** Shows a flight of the sweep in the dashboard. */

@@ -1,4 +1,4 @@
-// Title, state and progress of a sweep, and the buttons that cancel and continue it.
+// Title, state and progress of a sweep, and the buttons that cancel, continue and delete it.
 import type { SweepEntry, SweepState } from '../../protocol/sweep_types';
 import { formatDate, formatDuration, formatPercent } from '../../store/format';
 import { h, rebuild } from '../dom';
@@ -21,7 +21,7 @@ export class SweepHead {
   private readonly title = h('div', { class: 'sweep-title' });
   private readonly buttons = h('div', { class: 'sweep-buttons', 'data-changes': true });
   private readonly progress = h('div', { class: 'sweep-progress', 'data-role': 'sweep-progress' });
-  /** The sweep whose cancelling awaits confirmation. */
+  /** The sweep whose cancelling or deletion awaits confirmation. */
   private confirming: string | null = null;
   private shown: SweepState | null = null;
   private all: readonly SweepEntry[] = [];
@@ -66,7 +66,8 @@ export class SweepHead {
     const other = this.all.find(({ here, name }) => here !== null && name !== sweep.name);
     const unfinished = sweep.progress === null || sweep.progress.passed < sweep.progress.most;
     const failed = table?.failed ?? 0;
-    const key = [sweep.name, sweep.flying, sweep.here, asked, other?.name ?? null];
+    const passed = sweep.progress?.passed ?? null;
+    const key = [sweep.name, sweep.flying, sweep.here, asked, other?.name ?? null, passed];
     rebuild(this.buttons, JSON.stringify([key, unfinished, failed]), () => {
       if (sweep.here !== null) return [this.cancelButton(sweep, asked)];
       if (sweep.flying) return [];
@@ -86,6 +87,7 @@ export class SweepHead {
           },
           'Extend',
         ),
+        this.deleteButton(sweep, asked),
       ];
     });
   }
@@ -131,6 +133,26 @@ export class SweepHead {
         : envelope?.found === true
           ? 'Fly the other cells'
           : 'Continue',
+    );
+  }
+
+  private deleteButton({ name, progress }: SweepEntry, asked: boolean): HTMLElement {
+    const flights = progress === null ? 'its flights' : `its ${progress.passed} flights`;
+    return h(
+      'button',
+      {
+        class: asked ? 'secondary danger' : 'secondary',
+        'data-role': 'delete-sweep',
+        'data-of': name,
+        title: asked
+          ? `Click again to delete the sweep and ${flights} for good`
+          : `Delete the sweep and ${flights}`,
+        onclick: () => {
+          if (asked) void this.context.sweeps.remove(name);
+          this.ask(asked ? null : name);
+        },
+      },
+      asked ? 'Delete the sweep?' : 'Delete',
     );
   }
 

@@ -58,6 +58,10 @@ beforeEach(() => {
       const error = { code: 'unreadable', message: 'sweep.json: cannot be read' };
       return Promise.resolve(Response.json({ error }, { status: 422 }));
     }
+    if (init?.method === 'DELETE') {
+      sweeps = sweeps.filter(({ name }) => !url.endsWith(`/${name}`));
+      return Promise.resolve(new Response(null, { status: 204 }));
+    }
     if (url === 'api/sweeps') return Promise.resolve(Response.json({ sweeps }));
     const sweep = sweeps.find(({ name }) => url.endsWith(`/${name}`));
     return Promise.resolve(Response.json({ sweep, table: null }));
@@ -112,6 +116,18 @@ describe('SweepDesk', () => {
     waiting = waiting.slice(-1);
     await next();
     expect(notices.info).toHaveBeenCalledTimes(2);
+  });
+
+  it('deletes a sweep, and shows another one in its place', async () => {
+    sweeps = [entry('b'), entry('a')];
+    await desk.open();
+    await desk.remove('b');
+    expect(asked).toContain('DELETE api/sweeps/b');
+    expect(store.state.sweepPage.name).toBe('a');
+    expect(store.state.sweepPage.shown?.sweep.name).toBe('a');
+    await desk.remove('a');
+    expect(store.state.sweepPage).toMatchObject({ name: null, shown: null });
+    expect(notices.error).not.toHaveBeenCalled();
   });
 
   it('continues a sweep and shows it', async () => {
