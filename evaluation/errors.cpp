@@ -25,6 +25,14 @@ ErrorStatistics statistics_of(std::vector<double> errors) {
   return statistics;
 }
 
+double area_under_curve(const std::vector<double>& errors_m, int frames, double limit_m) {
+  double sum = 0.0;
+  for (const double error_m : errors_m) {
+    if (error_m < limit_m) sum += 1.0 - error_m / limit_m;
+  }
+  return sum / frames;
+}
+
 double euler_norm_rad(const Eigen::Quaterniond& R_world_body_a,
                       const Eigen::Quaterniond& R_world_body_b) {
   const RollPitchYaw a = attitude_from(R_world_body_a);

@@ -27,6 +27,21 @@ void add_errors(const std::vector<MatchedPose>& matches,
                 const Options& options,
                 AlignmentScore* score);
 
+/// Area under the curve of the share of frames whose error is below a threshold, for thresholds
+/// from 0 to the limit, divided by the limit: 1 if every frame has the error 0, 0 if none is below
+/// the limit.
+///
+/// Method: the area under the accuracy-threshold curve (Xiang, Schmidt, Narayanan, Fox 2018,
+/// "PoseCNN", doi:10.15607/RSS.2018.XIV.019), as its exact integral: the step of frame i at the
+/// threshold e_i has the area max(0, limit - e_i), so the value is
+/// (1 / frames) * sum of max(0, 1 - e_i / limit).
+/// @param errors_m  of the frames that have one [m]; others, and those that are not finite, add 0
+/// @param frames    all frames, >= errors_m.size(), > 0
+/// @param limit_m   largest threshold, > 0
+[[nodiscard]] double area_under_curve(const std::vector<double>& errors_m,
+                                      int frames,
+                                      double limit_m);
+
 /// @param T_world_camera_estimate  aligned poses, one for each match
 [[nodiscard]] std::vector<RelativeError> relative_errors(
     const std::vector<MatchedPose>& matches,

@@ -77,6 +77,7 @@ struct Options {
   /// KITTI's, and those between the position fixes of a long flight.
   std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800, 1000, 2000, 5000};
   std::vector<double> fix_intervals_m{1000, 2000, 5000};  ///< between position fixes
+  double auc_limit_m = 10.0;  ///< largest threshold of AlignmentScore::position_auc, > 0
   /// False for files without times, whose poses count as 1 s apart: nothing is then concluded from
   /// times.
   bool has_times = true;
@@ -134,6 +135,12 @@ struct AlignmentScore {
   /// Over all frames from the first tracked one to the end of the flight. A frame without a pose
   /// uses the last pose before it.
   double position_rmse_hold_m = 0.0;
+  /// Area under the curve of the share of the flight's frames whose position error is below a
+  /// threshold of 0 to Options::auc_limit_m, over that limit, [0, 1] (area_under_curve() in
+  /// errors.hpp). Frames without a scored pose count as errors above the limit. Empty if
+  /// Options::flight is empty, because a file with fewer poses would then score better, and in
+  /// scores of earlier versions.
+  std::optional<double> position_auc;
   std::vector<RelativeError> relative;
   std::vector<FixDrift> fix_drift;         ///< one for each of Options::fix_intervals_m
   std::optional<Consistency> consistency;  ///< if a scored pose has a covariance
@@ -152,6 +159,8 @@ struct Score {
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
+  /// Options::auc_limit_m of the alignments' position_auc; empty where they have none.
+  std::optional<double> position_auc_limit_m;
   CovarianceCounts covariances;
   std::vector<std::int64_t> matched_t_ns;  ///< stamps of the matched poses, in time order
   /// Results by mode. If the data cannot determine a mode, `unavailable` has the reason instead.

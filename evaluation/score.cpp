@@ -105,6 +105,7 @@ Score score(const Trajectory& T_world_camera_truth,
     return result;
   }
   for (const MatchedPose& match : *matches) result.matched_t_ns.push_back(match.t_ns);
+  if (!options.flight.empty()) result.position_auc_limit_m = options.auc_limit_m;
   const std::vector<HeldPose> held =
       held_poses(T_world_camera_truth, flown, longest_map(estimate), options);
   for (const AlignmentMode mode : all_alignment_modes()) {
@@ -121,6 +122,10 @@ Score score(const Trajectory& T_world_camera_truth,
     alignment.degenerate = std::move(remarks.degenerate);
     add_errors(*matches, options, &alignment);
     alignment.position_rmse_hold_m = hold_rmse_m(held, *S_world_vo);
+    if (result.position_auc_limit_m) {
+      alignment.position_auc = area_under_curve(
+          alignment.position_errors_m, result.frames, *result.position_auc_limit_m);
+    }
     result.alignments[mode] = std::move(alignment);
   }
   return result;

@@ -223,14 +223,15 @@ std::string outcome_line(const evaluation::Score& score) {
 }
 
 std::string alignment_table(const evaluation::Score& score) {
-  std::string table = formatted("  %-12s %12s %8s  %12s %12s %12s %14s\n",
+  std::string table = formatted("  %-12s %12s %8s  %12s %12s %12s %14s %6s\n",
                                 "alignment",
                                 "scale",
                                 "poses",
                                 "position [m]",
                                 "held [m]",
                                 "rot. [deg]",
-                                "euler n. [deg]");
+                                "euler n. [deg]",
+                                "AUC");
   for (const auto& [mode, alignment] : by_name(score.alignments)) {
     table += formatted("  %-12s %12.6g %8d  %12.3f %12.3f ",
                        mode.c_str(),
@@ -239,9 +240,15 @@ std::string alignment_table(const evaluation::Score& score) {
                        alignment->position_m.rmse,
                        alignment->position_rmse_hold_m) +
              figure(rmse_of(alignment->rotation_deg), 12, 4) + " " +
-             figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + "\n" +
-             degenerate_text(*alignment) + consistency_text(*alignment) +
-             fix_drift_text(*alignment, true) + notes_text(*alignment);
+             figure(rmse_of(alignment->rotation_euler_norm_deg), 14, 4) + " " +
+             figure(alignment->position_auc, 6, 3) + "\n" + degenerate_text(*alignment) +
+             consistency_text(*alignment) + fix_drift_text(*alignment, true) +
+             notes_text(*alignment);
+  }
+  if (score.position_auc_limit_m) {
+    table += formatted(
+        "  AUC: area under the share of the flight's frames below an error of 0 to %g m\n",
+        *score.position_auc_limit_m);
   }
   table += left_out_text(score);
   for (const auto& [mode, reason] : by_name(score.unavailable)) {

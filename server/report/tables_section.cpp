@@ -51,10 +51,11 @@ std::vector<Cell> score_row(const ReportEntry& entry,
           number(aligned.position_m.max),
           number(aligned.position_rmse_hold_m),
           number(rmse_figure(aligned.rotation_deg)),
-          number(rmse_figure(aligned.rotation_euler_norm_deg))};
+          number(rmse_figure(aligned.rotation_euler_norm_deg)),
+          number(aligned.position_auc)};
 }
 
-constexpr int kScoreColumns = 16;
+constexpr int kScoreColumns = 17;
 
 void add_score_rows(const ReportEntry& entry, std::vector<std::vector<Cell>>& rows) {
   const evaluation::Score& score = entry.metrics().score;
@@ -336,7 +337,10 @@ std::string scores_section(const ReportContent& content) {
   scores.caption =
       "Every estimator by every alignment. Errors are root mean squares unless stated otherwise; "
       "\"held\" holds the last pose to the end of the flight, \"Euler\" is the norm of the "
-      "differences of roll, pitch and yaw.";
+      "differences of roll, pitch and yaw, \"AUC\" the area under the curve of the share of the "
+      "flight's frames whose position error is below a threshold of 0 to " +
+      number_text(evaluation::Options().auc_limit_m) +
+      " m, where frames without a pose count as errors above it: 1 is the best.";
   scores.head = {{"estimator"},
                  {"outcome"},
                  {"alignment"},
@@ -352,7 +356,8 @@ std::string scores_section(const ReportContent& content) {
                  {"max. [m]", true},
                  {"held [m]", true},
                  {"rotation [deg]", true},
-                 {"Euler [deg]", true}};
+                 {"Euler [deg]", true},
+                 {"AUC", true}};
   for (const ReportRun& run : content.runs) {
     for (const ReportEstimate& estimate : run.estimates) {
       add_score_rows({&run, &estimate}, scores.rows);

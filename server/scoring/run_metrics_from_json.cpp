@@ -195,6 +195,7 @@ AlignmentScore read_alignment(const FileField& field, AlignmentMode mode) {
   take(field, "horizontal_rmse_m", score.horizontal_rmse_m);
   take(field, "vertical_rmse_m", score.vertical_rmse_m);
   take(field, "position_rmse_hold_m", score.position_rmse_hold_m);
+  take(field, "position_auc", score.position_auc);
   std::optional<double> rotation_rmse_deg;
   take(field, "rotation_rmse_deg", rotation_rmse_deg);
   if (rotation_rmse_deg) {
@@ -237,6 +238,7 @@ Score read_score(const FileField& field) {
   take(field, "initialised_at_s", score.initialised_at_s);
   take(field, "frames", score.frames);
   take(field, "tracked_frames", score.tracked_frames);
+  take(field, "position_auc_limit_m", score.position_auc_limit_m);
   if (const auto covariances = field.find("covariances")) {
     take(*covariances, "stated", score.covariances.stated);
     take(*covariances, "left_out", score.covariances.left_out);

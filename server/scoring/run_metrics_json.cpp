@@ -115,6 +115,7 @@ Json alignment_json(const AlignmentScore& score) {
       {"horizontal_rmse_m", or_null(score.horizontal_rmse_m)},
       {"vertical_rmse_m", or_null(score.vertical_rmse_m)},
       {"position_rmse_hold_m", score.position_rmse_hold_m},
+      {"position_auc", or_null(score.position_auc)},
       {"rotation_rmse_deg", rotation(&ErrorStatistics::rmse)},
       {"rotation_mean_deg", rotation(&ErrorStatistics::mean)},
       {"rotation_median_deg", rotation(&ErrorStatistics::median)},
@@ -172,6 +173,7 @@ Json json_from(const Score& score) {
                 {"initialised_at_s", or_null(score.initialised_at_s)},
                 {"frames", score.frames},
                 {"tracked_frames", score.tracked_frames},
+                {"position_auc_limit_m", or_null(score.position_auc_limit_m)},
                 {"alignments", alignments_json(score)},
                 {"unavailable", unavailable_json(score)}};
   if (score.covariances.any()) {

@@ -10,6 +10,7 @@ const kFigures = [
   'position_rmse_hold_m',
   'rotation_rmse_deg',
   'rotation_euler_norm_rmse_deg',
+  'position_auc',
 ];
 const kLengths_m = [100, 200, 400, 800, 1000, 2000, 5000];
 const kIntervals_m = [1000, 2000, 5000];

@@ -53,6 +53,7 @@ RunMetrics full_metrics() {
   score.initialised_at_s = 0.5;
   score.frames = 24;
   score.tracked_frames = 18;
+  score.position_auc_limit_m = 10.0;
   evaluation::AlignmentScore sim3;
   sim3.mode = AlignmentMode::kSim3;
   sim3.S_world_vo = {
@@ -62,6 +63,7 @@ RunMetrics full_metrics() {
   sim3.rotation_deg = evaluation::ErrorStatistics{0.5, 0.375, 0.25, 1.5};
   sim3.rotation_euler_norm_deg.emplace().rmse = 0.75;
   sim3.position_rmse_hold_m = 5.5;
+  sim3.position_auc = 0.4375;
   sim3.relative.push_back({100.0, 7, 1.125, 0.0625});
   sim3.notes = {"only the longest map"};
   sim3.fix_drift = {{1000.0, 12, 3, 4.5, 9.25, 4.25, 9.0, ""},
@@ -107,6 +109,9 @@ TEST(RunMetricsJson, IsReadAsItWasWritten) {
   EXPECT_TRUE(consistency.at("rotation").is_null());
   EXPECT_FALSE(document.at("estimators").at("p").contains("covariances"));
   EXPECT_FALSE(estimator.at("alignments").at("se3").contains("consistency"));
+  EXPECT_EQ(estimator.at("alignments").at("sim3").at("position_auc"), 0.4375);
+  EXPECT_TRUE(estimator.at("alignments").at("se3").at("position_auc").is_null());
+  EXPECT_EQ(estimator.at("position_auc_limit_m"), 10.0);
   EXPECT_EQ(estimator.at("alignments").at("sim3").at("fix_drift").at(1),
             Json::parse(R"({"interval_m": 2000.0,
                             "unavailable": "the scored path is 1200 m long"})"));
@@ -135,6 +140,8 @@ TEST(RunMetricsJson, UnknownAndMissingFieldsAreNoFault) {
 
   const auto earlier = read_changed([](Json& document) {
     document["estimators"]["f"].erase("unanswered");
+    document["estimators"]["f"].erase("position_auc_limit_m");
+    document["estimators"]["f"]["alignments"]["se3"].erase("position_auc");
     document["estimators"]["f"]["alignments"]["sim3"].erase("S_world_vo");
     document.erase("flight");
   });
@@ -142,7 +149,9 @@ TEST(RunMetricsJson, UnknownAndMissingFieldsAreNoFault) {
   const EstimatorMetrics& estimator = earlier->estimators.at("f");
   EXPECT_EQ(estimator.unanswered, 0);
   EXPECT_FALSE(estimator.score.alignments.contains(AlignmentMode::kSim3)) << "has no transform";
-  EXPECT_TRUE(estimator.score.alignments.contains(AlignmentMode::kSe3));
+  ASSERT_TRUE(estimator.score.alignments.contains(AlignmentMode::kSe3));
+  EXPECT_FALSE(estimator.score.alignments.at(AlignmentMode::kSe3).position_auc.has_value());
+  EXPECT_FALSE(estimator.score.position_auc_limit_m.has_value());
 }
 
 TEST(RunMetricsJson, InvalidFieldIsNamed) {

@@ -150,6 +150,8 @@ export interface AlignmentErrors {
   percent_of_path?: number | null;
   rotation_rmse_deg?: number | null;
   position_rmse_hold_m?: number | null;
+  /** Share of 1; absent in older runs, null where the frames of the flight are not known. */
+  position_auc?: number | null;
   rotation_euler_norm_rmse_deg?: number | null;
   /**
    * The reason why the positions do not determine the rotation; there are then no rotation errors.

@@ -62,7 +62,21 @@ export const kErrorFigures: readonly Figure[] = [
     hint: 'Norm of the wrapped roll, pitch and yaw errors',
     digits: 3,
   },
+  {
+    key: 'position_auc',
+    label: 'Position AUC',
+    unit: '',
+    hint: "Area under the curve of the share of the flight's frames whose position error is below a threshold of 0 to 10 m, over 10 m: 1 is the best. Frames without a pose count as errors above it",
+    digits: 3,
+  },
 ];
+
+/** The figures that a table of these errors shows: the AUC only where one of them has it. */
+export function shownFigures(errors: readonly AlignmentErrors[]): Figure[] {
+  return kErrorFigures.filter(
+    ({ key }) => key !== 'position_auc' || errors.some((one) => numberOf(one[key]) !== null),
+  );
+}
 
 /** Lengths of the sub-paths whose errors are shown [m]; the metrics have every hundred to 800 m. */
 const kRelativeLengths_m: readonly number[] = [100, 200, 400, 800, 1000, 2000, 5000];
@@ -116,7 +130,7 @@ export interface ErrorColumn {
 /** Figures, drift by length, and those of fixes and covariances that any of the errors has. */
 export function errorColumns(errors: readonly AlignmentErrors[]): ErrorColumn[] {
   return [
-    ...kErrorFigures.map(({ key, label, unit, hint, digits }) => ({
+    ...shownFigures(errors).map(({ key, label, unit, hint, digits }) => ({
       key,
       label,
       unit,

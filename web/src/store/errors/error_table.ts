@@ -1,6 +1,6 @@
 // Converts metrics.json to the error table: one column per estimator, one row per quantity.
 import type { AlignmentErrors, EstimatorMetrics, Metrics, Run } from '../../protocol/rest_types';
-import { driftOf, kErrorFigures, relativeError, runErrors, shownLengths_m } from './error_figures';
+import { driftOf, relativeError, runErrors, shownFigures, shownLengths_m } from './error_figures';
 import { fixRows, neesRows } from './fix_errors';
 import { formatNumber, formatPercent, kNothing, numberOf } from '../format';
 import type { WatchedRun } from '../watched_run';
@@ -90,7 +90,7 @@ export function errorTable(
         cells: estimators.map(({ coverage }) => formatPercent(coverage)),
         cellHints: [],
       },
-      ...kErrorFigures.map(({ digits, ...row }) => ({
+      ...shownFigures(errors).map(({ digits, ...row }) => ({
         ...row,
         cells: errors.map((error) => formatNumber(numberOf(error[row.key]), digits)),
         cellHints: errors.map((error) => missingHint(error, row.key)),

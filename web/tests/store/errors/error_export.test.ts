@@ -21,6 +21,7 @@ function scored(id: string, title: string): WatchedRun {
             position_rmse_m: 1.5,
             horizontal_rmse_m: 1.479,
             vertical_rmse_m: 0.25,
+            position_auc: 0.43210987654321,
             relative: [
               { length_m: 200, pairs: 2, translation_percent: 3.5, rotation_deg_per_100m: 1 },
             ],
@@ -47,6 +48,7 @@ describe('exportErrors', () => {
     const cell = (name: string) => first[head.indexOf(name)];
     expect(first).toHaveLength(head.length);
     expect(cell('vertical_rmse_m')).toBe('0.25');
+    expect(cell('position_auc')).toBe('0.43210987654321');
     expect(cell('percent_of_path')).toBe('0.75');
     expect(cell('translation_percent_100m')).toBe('');
     expect(cell('translation_percent_200m')).toBe('3.5');
@@ -72,7 +74,7 @@ describe('exportErrors', () => {
 
   it('writes LaTeX with its special characters escaped', () => {
     const text = exportErrors([scored('r1', '50 % a_b'), scored('r2', 'z')], 'LaTeX');
-    expect(text).toContain('\\begin{tabular}{llllrrrrrrrrrrrr}');
+    expect(text).toContain('\\begin{tabular}{llllrrrrrrrrrrrrr}');
     expect(text).toContain(
       '50 \\% a\\_b & feature & LOST at 3.1 s, 79 m & init\\_scale & $-$2.0000',
     );

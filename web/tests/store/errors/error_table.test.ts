@@ -30,6 +30,7 @@ const metrics: Metrics = {
           position_rmse_hold_m: 500,
           rotation_rmse_deg: 0.5,
           rotation_euler_norm_rmse_deg: null,
+          position_auc: 0.3456,
           relative: [
             { length_m: 100, pairs: 9, translation_percent: 1.25, rotation_deg_per_100m: 0.5 },
             { length_m: 300, pairs: 4, translation_percent: 1, rotation_deg_per_100m: 0.1 },
@@ -67,6 +68,7 @@ describe('errorTable', () => {
       position_rmse_hold_m: ['500.000', '–'],
       rotation_rmse_deg: ['0.500', '–'],
       rotation_euler_norm_rmse_deg: ['–', '–'],
+      position_auc: ['0.346', '–'],
       relative_100m: ['1.250', '–'],
       relative_200m: ['–', '–'],
       relative_400m: ['–', '–'],
@@ -78,6 +80,11 @@ describe('errorTable', () => {
   it('has no share of a path that is not known', () => {
     const { rows } = errorTable({ ...metrics, flight: {} }, 'init_scale');
     expect(rows.find(({ key }) => key === 'percent_of_path')?.cells).toEqual(['–', '–']);
+  });
+
+  it('has no area under the curve where no alignment has one', () => {
+    const { rows } = errorTable(metrics, 'sim3');
+    expect(rows.map(({ key }) => key)).not.toContain('position_auc');
   });
 
   it('shows kilometres between position fixes where the path has them', () => {
