@@ -53,6 +53,48 @@ Result<double> init_scale(const std::vector<MatchedPose>& matches,
   return scale;
 }
 
+/// Number of poses that first_sim3 is fitted to where times are not known: 10 s at the 10 Hz of the
+/// KITTI benchmark.
+constexpr std::size_t kFirstPoses = 100;
+
+std::vector<MatchedPose> first_poses(const std::vector<MatchedPose>& matches,
+                                     const Options& options) {
+  auto end = matches.begin() + static_cast<std::ptrdiff_t>(std::min(kFirstPoses, matches.size()));
+  if (options.has_times) {
+    end = std::find_if(matches.begin(), matches.end(), [&](const MatchedPose& match) {
+      return match.t_ns - matches.front().t_ns > ns_from_s(options.first_s);
+    });
+  }
+  return {matches.begin(), end};
+}
+
+/// "the first 101 of 600 poses (10.0 s)"
+std::string first_words(const std::vector<MatchedPose>& first,
+                        const std::vector<MatchedPose>& matches,
+                        const Options& options) {
+  std::array<char, 100> text{};
+  const std::string poses = std::to_string(first.size()) + " of " + std::to_string(matches.size());
+  if (!options.has_times) return "the first " + poses + " poses (times are not known)";
+  std::snprintf(text.data(),
+                text.size(),
+                "the first %s poses (%.1f s)",
+                poses.c_str(),
+                s_from_ns(first.back().t_ns - first.front().t_ns));
+  return text.data();
+}
+
+Result<Similarity> fit_first(const std::vector<MatchedPose>& matches,
+                             const Options& options,
+                             AlignmentRemarks* remarks) {
+  const std::vector<MatchedPose> first = first_poses(matches, options);
+  const std::string words = first_words(first, matches, options);
+  if (remarks != nullptr) remarks->notes.push_back("fitted to " + words);
+  Result<Similarity> S_world_vo = fit_similarity(
+      first, {.with_scale = true, .hold_first = false, .turn_nearly_straight = true}, remarks);
+  if (!S_world_vo) return S_world_vo.error().in(words);
+  return S_world_vo;
+}
+
 /// The similarity with a given scale that aligns the first poses.
 Similarity first_pose(const MatchedPose& first, double scale) {
   Similarity S_world_vo;
@@ -69,13 +111,14 @@ struct ModeName {
   const char* name;
 };
 
-constexpr std::array<ModeName, 7> kModeNames{{{AlignmentMode::kNone, "none"},
+constexpr std::array<ModeName, 8> kModeNames{{{AlignmentMode::kNone, "none"},
                                               {AlignmentMode::kOrigin, "origin"},
                                               {AlignmentMode::kInitScale, "init_scale"},
                                               {AlignmentMode::kSe3, "se3"},
                                               {AlignmentMode::kSim3, "sim3"},
                                               {AlignmentMode::kYawOnly, "yaw_only"},
-                                              {AlignmentMode::kOriginSim3, "origin_sim3"}}};
+                                              {AlignmentMode::kOriginSim3, "origin_sim3"},
+                                              {AlignmentMode::kFirstSim3, "first_sim3"}}};
 
 }  // namespace
 
@@ -128,6 +171,8 @@ Result<Similarity> align(const std::vector<MatchedPose>& matches,
       return fit_yaw(matches);
     case AlignmentMode::kOriginSim3:
       return fit_similarity(matches, {.with_scale = true, .hold_first = true}, remarks);
+    case AlignmentMode::kFirstSim3:
+      return fit_first(matches, options, remarks);
   }
   return Error{ErrorCode::kInvalidArgument, "unknown alignment mode"};
 }

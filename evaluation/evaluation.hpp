@@ -24,9 +24,18 @@ enum class Association {
 /// "interpolate", "nearest", "index".
 [[nodiscard]] const char* to_string(Association association);
 
-enum class AlignmentMode { kNone, kOrigin, kInitScale, kSe3, kSim3, kYawOnly, kOriginSim3 };
+enum class AlignmentMode {
+  kNone,
+  kOrigin,
+  kInitScale,
+  kSe3,
+  kSim3,
+  kYawOnly,
+  kOriginSim3,
+  kFirstSim3,
+};
 
-/// "none", "origin", "init_scale", "se3", "sim3", "yaw_only", "origin_sim3".
+/// "none", "origin", "init_scale", "se3", "sim3", "yaw_only", "origin_sim3", "first_sim3".
 [[nodiscard]] const char* to_string(AlignmentMode mode);
 [[nodiscard]] std::optional<AlignmentMode> alignment_mode_from(const std::string& text);
 [[nodiscard]] const std::vector<AlignmentMode>& all_alignment_modes();
@@ -77,6 +86,8 @@ struct Options {
   /// KITTI's, and those between the position fixes of a long flight.
   std::vector<double> rpe_lengths_m{100, 200, 300, 400, 500, 600, 700, 800, 1000, 2000, 5000};
   std::vector<double> fix_intervals_m{1000, 2000, 5000};  ///< between position fixes
+  /// AlignmentMode::kFirstSim3 is fitted to the poses of this time after the first matched one.
+  double first_s = 10.0;
   double auc_limit_m = 10.0;  ///< largest threshold of AlignmentScore::position_auc, > 0
   /// False for files without times, whose poses count as 1 s apart: nothing is then concluded from
   /// times.
@@ -145,7 +156,8 @@ struct AlignmentScore {
   std::vector<FixDrift> fix_drift;         ///< one for each of Options::fix_intervals_m
   std::optional<Consistency> consistency;  ///< if a scored pose has a covariance
   std::vector<std::string> notes;          ///< e.g. "scale from the path of the first 5 s"
-  /// Why the positions do not determine the rotation. Position errors remain valid.
+  /// Why the positions do not determine the rotation. Position errors remain valid; those of
+  /// first_sim3 then depend on the orientations at the start.
   std::optional<std::string> degenerate;
 };
 
@@ -193,10 +205,13 @@ struct AlignmentRemarks {
 /// - yaw_only: least squares with rotation about the vertical only, scale 1 (Zhang, Scaramuzza
 /// 2018).
 /// - origin_sim3: sim3 with the first position fixed.
+/// - first_sim3: sim3 fitted to the poses of the first Options::first_s only, so that the errors
+/// after them show the drift; without times, to the first 100 poses, which are 10 s at 10 Hz. The
+/// number of poses and their time are noted.
 ///
-/// Near a straight line se3, sim3 and origin_sim3 are degenerate: positions do not determine the
-/// rotation about the line (see kStraightRatio in umeyama.hpp). On an exact line that rotation is
-/// taken from the orientations and noted.
+/// Near a straight line se3, sim3, origin_sim3 and first_sim3 are degenerate: positions do not
+/// determine the rotation about the line (see kStraightRatio in umeyama.hpp). On an exact line, and
+/// for first_sim3 also near one, that rotation is taken from the orientations and noted.
 /// Errors: kInvalidArgument if the data is not sufficient for the mode; the message says what is
 /// missing.
 [[nodiscard]] Result<Similarity> align(const std::vector<MatchedPose>& matches,

@@ -126,17 +126,21 @@ Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
   if (parts.U.determinant() * parts.V.determinant() < 0.0) S(2) = -1.0;  // (43)
   Eigen::Matrix3d R = parts.U * S.asDiagonal() * parts.V.transpose();    // (40)
   const double ratio = straightness(m, D);
-  if (remarks != nullptr && ratio < kStraightRatio) remarks->degenerate = straight_text(ratio);
-  if (D(1) <= kLineRatio * D(0)) {
+  const bool nearly_straight = ratio < kStraightRatio;
+  const bool on_line = D(1) <= kLineRatio * D(0);
+  double correlation = D.dot(S);  // tr(D S), which is tr(R^T sigma_xy)
+  if (remarks != nullptr && nearly_straight) remarks->degenerate = straight_text(ratio);
+  if (on_line || (nearly_straight && options.turn_nearly_straight)) {
     R = turned_to_orientations(matches, R, parts.U.col(0));
+    correlation = (R.transpose() * m.sigma_xy).trace();
     if (remarks != nullptr) {
-      remarks->notes.emplace_back(
-          "the positions lie on a line: the rotation about it is taken from the orientations");
+      remarks->notes.push_back(std::string("the positions lie ") + (on_line ? "" : "nearly ") +
+                               "on a line: the rotation about it is taken from the orientations");
     }
   }
   Similarity S_world_vo;
   S_world_vo.rotation = Eigen::Quaterniond(R).normalized();
-  if (options.with_scale) S_world_vo.scale = D.dot(S) / m.variance_x;  // (42)
+  if (options.with_scale) S_world_vo.scale = correlation / m.variance_x;  // (42)
   S_world_vo.translation =
       m.centre_y - S_world_vo.scale * (S_world_vo.rotation * m.centre_x);  // (41)
   return S_world_vo;

@@ -24,6 +24,9 @@ struct FitOptions {
   bool with_scale = false;
   /// Fix the first position instead of the mean.
   bool hold_first = false;
+  /// Take the rotation about a path that is nearly straight (kStraightRatio) from the orientations.
+  /// Needed if the fit is applied to poses beside the line, which that rotation moves.
+  bool turn_nearly_straight = false;
 };
 
 /// Computes the S_world_vo that minimises the sum of squared position errors.
@@ -31,8 +34,8 @@ struct FitOptions {
 /// patterns", eq. 34-43, doi:10.1109/34.88573. With hold_first the same derivation applies about
 /// the first point, with the translation eliminated by the constraint (Horn 1987, sec. 2).
 /// Near a line (kStraightRatio) `remarks` says that the rotation about it is not determined. On an
-/// exact line the rotation that best aligns the orientations is used (least chordal distance;
-/// noted).
+/// exact line, and with turn_nearly_straight also near one, the rotation that best aligns the
+/// orientations is used (least chordal distance; noted), with the best scale for it.
 /// Errors: kInvalidArgument for fewer than two poses and for positions that do not move.
 [[nodiscard]] Result<Similarity> fit_similarity(const std::vector<MatchedPose>& matches,
                                                 const FitOptions& options,

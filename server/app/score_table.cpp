@@ -247,7 +247,8 @@ std::string alignment_table(const evaluation::Score& score) {
   }
   if (score.position_auc_limit_m) {
     table += formatted(
-        "  AUC: area under the share of the flight's frames below an error of 0 to %g m\n",
+        "  AUC: area under the share of the flight's frames with an error below 0 to %g m, 1 is "
+        "best\n",
         *score.position_auc_limit_m);
   }
   table += left_out_text(score);

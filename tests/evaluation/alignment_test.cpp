@@ -28,7 +28,7 @@ double cost_m2(const std::vector<MatchedPose>& matches, const Similarity& S_worl
 }
 
 TEST(Alignment, NamesGoForthAndBack) {
-  EXPECT_EQ(all_alignment_modes().size(), 7U);
+  EXPECT_EQ(all_alignment_modes().size(), 8U);
   for (const AlignmentMode mode : all_alignment_modes()) {
     EXPECT_EQ(alignment_mode_from(to_string(mode)), mode);
   }

@@ -51,7 +51,7 @@ TEST_F(OutcomeTest, CompletedWhenItTracksAlmostAllAfterInitialisation) {
   EXPECT_EQ(result.tracked_frames, 532);
   EXPECT_DOUBLE_EQ(result.coverage, 532.0 / 600.0);
   EXPECT_DOUBLE_EQ(*result.initialised_at_s, 4.0);
-  EXPECT_EQ(result.alignments.size(), 7U);
+  EXPECT_EQ(result.alignments.size(), 8U);
   EXPECT_TRUE(result.unavailable.empty());
 }
 
@@ -62,7 +62,7 @@ TEST_F(OutcomeTest, NotInitialisedWhenItNeverTracks) {
   EXPECT_EQ(result.coverage, 0.0);
   EXPECT_FALSE(result.initialised_at_s.has_value());
   EXPECT_TRUE(result.alignments.empty());
-  EXPECT_EQ(result.unavailable.size(), 7U);
+  EXPECT_EQ(result.unavailable.size(), 8U);
   EXPECT_THAT(result.unavailable.at(AlignmentMode::kSim3), HasSubstr("never tracked"));
 }
 

@@ -138,6 +138,7 @@ TEST(Reference, FiftyRandomFlightsScoreAsTheIndependentScriptSays) {
           association == "nearest" ? Association::kNearest : Association::kInterpolate;
       options.init_true_depth_m = flight.true_depth_m;
       options.rpe_lengths_m = {10.0, 40.0};
+      options.first_s = 2.0;
       scored = score(flight.truth, flight.track, options);
       flight_index = index;
     }
@@ -152,7 +153,7 @@ TEST(Reference, FiftyRandomFlightsScoreAsTheIndependentScriptSays) {
       ++checked;
     }
   }
-  EXPECT_EQ(checked, 50 * 7 * 18);
+  EXPECT_EQ(checked, 50 * 8 * 18);
 }
 
 }  // namespace
