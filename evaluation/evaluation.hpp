@@ -166,8 +166,13 @@ struct Score {
   std::optional<double> outcome_time_s;  ///< of late initialisation, loss, reset or divergence
   /// True path flown until then; empty without truth, and in scores of earlier versions.
   std::optional<double> outcome_distance_m;
-  int reset_count = 0;    ///< further maps, from the first tracked frame on
-  double coverage = 0.0;  ///< tracked frames / frames of the flight, [0, 1]
+  /// How often it tracked again in a map in which it had tracked before, after a second or longer
+  /// without a tracked frame: reported as lost, or never received. The first tracked frame of a new
+  /// map is a reset instead. Empty in scores of earlier versions.
+  std::optional<int> relocalisations;
+  std::optional<double> relocalised_at_s;  ///< flight time of the first one
+  int reset_count = 0;                     ///< further maps, from the first tracked frame on
+  double coverage = 0.0;                   ///< tracked frames / frames of the flight, [0, 1]
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;

@@ -109,6 +109,23 @@ std::optional<double> loss_time_s(const std::vector<FlownFrame>& flown,
   return begin_s;
 }
 
+/// Counts the ends of losses after which the estimator tracks in a map that it had tracked before.
+void add_relocalisations(const std::vector<FlownFrame>& flown, Score* score) {
+  score->relocalisations = 0;
+  std::set<int> known_maps;
+  std::size_t last = 0;  // tracked frame
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    if (!has_pose(flown[i])) continue;
+    const bool is_known = !known_maps.insert(flown[i].sample.map_id).second;
+    const bool was_lost = i > last + 1 && flown[i].t_ns - flown[last].t_ns >= kGapNs;
+    if (is_known && was_lost) {
+      ++*score->relocalisations;
+      if (!score->relocalised_at_s) score->relocalised_at_s = s_from_ns(flown[i].t_ns);
+    }
+    last = i;
+  }
+}
+
 /// Time of the first frame in a later map than that of the first tracked frame.
 std::optional<double> reset_time_s(const std::vector<FlownFrame>& flown, std::size_t first) {
   for (std::size_t i = first; i < flown.size(); ++i) {
@@ -194,6 +211,7 @@ void add_outcome(const std::vector<FlownFrame>& flown,
   score->frames = static_cast<int>(flown.size());
   score->tracked_frames = static_cast<int>(std::count_if(flown.begin(), flown.end(), has_pose));
   score->outcome = Outcome::kNotInitialised;
+  add_relocalisations(flown, score);
   if (score->tracked_frames == 0) return;
 
   score->coverage = static_cast<double>(score->tracked_frames) / score->frames;

@@ -20,7 +20,7 @@ struct FlownFrame {
 [[nodiscard]] std::vector<FlownFrame> flown_frames(const EstimateTrack& estimate,
                                                    const Options& options);
 
-/// Sets outcome, outcome time, resets, coverage and counts.
+/// Sets outcome, outcome time, relocalisations, resets, coverage and counts.
 /// @param matches  of the longest map; may be empty
 void add_outcome(const std::vector<FlownFrame>& flown,
                  const std::vector<MatchedPose>& matches,

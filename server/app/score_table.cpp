@@ -131,6 +131,14 @@ std::string outcome_text(const evaluation::Score& score) {
   return text;
 }
 
+/// "found its map again 2 times, first at 15.1 s"; empty if it never did.
+std::string relocalised_text(const evaluation::Score& score) {
+  const int times = score.relocalisations.value_or(0);
+  if (times == 0 || !score.relocalised_at_s) return "";
+  const std::string count = times == 1 ? "" : formatted(" %d times, first", times);
+  return "found its map again" + count + formatted(" at %.1f s", *score.relocalised_at_s);
+}
+
 /// @param name  of the camera, for people
 std::string notes_of(const std::string& name, const server::CameraMetrics& camera) {
   std::string notes;
@@ -208,8 +216,10 @@ std::string score_table(const server::RunMetrics& metrics, evaluation::Alignment
                        outcome_text(estimator.score).c_str(),
                        100.0 * estimator.score.coverage,
                        static_cast<long long>(estimator.dropped_frames)) +
-             errors_text(estimator.score, mode) + trouble_text(estimator) +
-             left_out_text(estimator.score);
+             errors_text(estimator.score, mode);
+    const std::string relocalised = relocalised_text(estimator.score);
+    if (!relocalised.empty()) table += "    " + relocalised + "\n";
+    table += trouble_text(estimator) + left_out_text(estimator.score);
   }
   return table + "RMSE, alignment " + evaluation::to_string(mode) + "\n";
 }
@@ -219,7 +229,9 @@ std::string coverage_text(const evaluation::Score& score) {
 }
 
 std::string outcome_line(const evaluation::Score& score) {
-  return outcome_text(score) + ", " + coverage_text(score);
+  const std::string relocalised = relocalised_text(score);
+  return outcome_text(score) + (relocalised.empty() ? "" : "; " + relocalised) + ", " +
+         coverage_text(score);
 }
 
 std::string alignment_table(const evaluation::Score& score) {

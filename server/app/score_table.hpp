@@ -14,7 +14,7 @@ namespace overfly::app {
 
 /// "coverage 45.6 %"
 [[nodiscard]] std::string coverage_text(const evaluation::Score& score);
-/// "LOST at 12.3 s, coverage 45.6 %"
+/// "LOST at 12.3 s, after 500 m; found its map again at 15.1 s, coverage 45.6 %"
 [[nodiscard]] std::string outcome_line(const evaluation::Score& score);
 
 /// One line for each alignment of an estimate: mode, scale, position and rotation error.

@@ -183,6 +183,8 @@ std::string entry_words(const ReportEntry& entry, AlignmentMode mode) {
   std::string text =
       outcome_words(metrics) + " and tracked " + percent_text(metrics.score.coverage) + " of " +
       counted(static_cast<std::uint64_t>(std::max(0, metrics.score.frames)), "frame") + ".";
+  const std::string relocalised = relocalised_words(metrics.score);
+  if (!relocalised.empty()) text += " It " + relocalised + ".";
   if (metrics.test_estimator) text += " It is a test estimator, which is given the truth.";
   if (metrics.crash) text += " Reason: " + *metrics.crash + ".";
   const std::string then = circumstances(*entry.run, *entry.estimate);

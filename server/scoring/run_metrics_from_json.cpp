@@ -58,6 +58,11 @@ void take(const FileField& object, const char* name, std::optional<double>& valu
   if (field && !field->is_null()) value = field->number();
 }
 
+void take(const FileField& object, const char* name, std::optional<int>& value) {
+  const auto field = object.find(name);
+  if (field && !field->is_null()) take(object, name, value.emplace());
+}
+
 void take(const FileField& object, const char* name, std::optional<std::string>& value) {
   const auto field = object.find(name);
   if (field && !field->is_null()) value = field->text();
@@ -233,6 +238,8 @@ Score read_score(const FileField& field) {
   score.outcome = *known;
   take(field, "outcome_time_s", score.outcome_time_s);
   take(field, "outcome_distance_m", score.outcome_distance_m);
+  take(field, "relocalisations", score.relocalisations);
+  take(field, "relocalised_at_s", score.relocalised_at_s);
   take(field, "reset_count", score.reset_count);
   take(field, "coverage", score.coverage);
   take(field, "initialised_at_s", score.initialised_at_s);

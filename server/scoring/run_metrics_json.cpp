@@ -168,6 +168,8 @@ Json json_from(const Score& score) {
   Json value = {{"outcome", evaluation::to_string(score.outcome)},
                 {"outcome_time_s", or_null(score.outcome_time_s)},
                 {"outcome_distance_m", or_null(score.outcome_distance_m)},
+                {"relocalisations", or_null(score.relocalisations)},
+                {"relocalised_at_s", or_null(score.relocalised_at_s)},
                 {"reset_count", score.reset_count},
                 {"coverage", score.coverage},
                 {"initialised_at_s", or_null(score.initialised_at_s)},

@@ -96,7 +96,7 @@ describe('two flights compared', { skip, timeout: 600_000 }, () => {
   });
 
   step('copies every figure of both as overfly evaluate prints it', async () => {
-    const texts = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'outcome_distance_m', 'coverage', 'alignment'];
+    const texts = ['run', 'title', 'estimator', 'outcome', 'outcome_time_s', 'outcome_distance_m', 'relocalisations', 'relocalised_at_s', 'coverage', 'alignment'];
     const csv = await copyFrom(page, '#copy-errors', 'CSV');
     const rows = csvRows(csv);
     let numbers = 0;

@@ -75,8 +75,9 @@ std::string figure_text(const std::optional<double>& value) {
 }
 
 std::string outcome_text(const evaluation::Score& score) {
-  std::string text = evaluation::to_string(score.outcome);
-  return text + when_words(score);
+  const std::string relocalised = relocalised_words(score);
+  return evaluation::to_string(score.outcome) + when_words(score) +
+         (relocalised.empty() ? "" : "; " + relocalised);
 }
 
 std::string outcome_words(const EstimatorMetrics& metrics) {
@@ -102,6 +103,13 @@ std::string outcome_words(const EstimatorMetrics& metrics) {
       return "stopped answering and was ended" + at;
   }
   return "";
+}
+
+std::string relocalised_words(const evaluation::Score& score) {
+  const int times = score.relocalisations.value_or(0);
+  if (times == 0 || !score.relocalised_at_s) return "";
+  const std::string count = times == 1 ? "" : " " + std::to_string(times) + " times, first";
+  return "found its map again" + count + " at " + seconds_words(*score.relocalised_at_s);
 }
 
 std::string circumstances(const ReportRun& run, const ReportEstimate& estimate) {

@@ -13,11 +13,16 @@ namespace overfly::server::report {
 [[nodiscard]] std::string figure_text(double value);
 [[nodiscard]] std::string figure_text(const std::optional<double>& value);
 
-/// "COMPLETED", "LOST at 12.3 s", with a no-break space before the unit.
+/// "COMPLETED", "LOST at 12.3 s, after 500 m; found its map again at 15.1 s", with no-break spaces
+/// before the units.
 [[nodiscard]] std::string outcome_text(const evaluation::Score& score);
 
 /// What an estimator did, as a predicate: "was lost at 12.3 s".
 [[nodiscard]] std::string outcome_words(const EstimatorMetrics& metrics);
+
+/// "found its map again at 15.1 s", "found its map again 2 times, first at 15.1 s"; empty if it
+/// never did.
+[[nodiscard]] std::string relocalised_words(const evaluation::Score& score);
 
 /// The circumstances of the outcome: attitude, rate of turn, depth of the ground, texture,
 /// saturation and faults in the camera's frame at the outcome's time. Empty for outcomes without a

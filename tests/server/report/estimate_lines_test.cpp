@@ -1,6 +1,7 @@
 // Lines of runs made by hand: their values, and their gaps.
 #include "server/report/figures/estimate_lines.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 
 using testing::add_estimator;
 using testing::bent_run;
+using ::testing::EndsWith;
 
 TrackingState always(std::int64_t) { return TrackingState::kTracking; }
 
@@ -137,6 +139,10 @@ TEST(Words, SayWhatHappenedAndUnderWhichCircumstances) {
     return frame < 40 ? TrackingState::kTracking : TrackingState::kLost;
   });
   add_estimator(run, "b", always);
+  // For 1.5 s.
+  add_estimator(run, "c", [](std::int64_t frame) {
+    return frame > 50 && frame < 66 ? TrackingState::kLost : TrackingState::kTracking;
+  });
   // The integral of sqrt((20 m/s)^2 + (1 m/s^2 t)^2) over 4 s is 80.53 m.
   EXPECT_EQ(outcome_words(run.metrics_of(run.estimates[0])),
             "was lost at 4.0\xC2\xA0s, after 81\xC2\xA0m");
@@ -149,6 +155,9 @@ TEST(Words, SayWhatHappenedAndUnderWhichCircumstances) {
             "blackout.");
   EXPECT_EQ(outcome_words(run.metrics_of(run.estimates[1])), "completed the flight");
   EXPECT_EQ(circumstances(run, run.estimates[1]), "");
+  EXPECT_EQ(relocalised_words(run.metrics_of(run.estimates[1]).score), "");
+  EXPECT_THAT(outcome_text(run.metrics_of(run.estimates[2]).score),
+              EndsWith("; found its map again at 6.6\xC2\xA0s"));
   EXPECT_NEAR(*percent_of_path(run, 2.0), 200.0 / run.metrics.flight.path_length_m, 1e-12);
 }
 

@@ -48,6 +48,8 @@ RunMetrics full_metrics() {
   score.outcome = evaluation::Outcome::kCrashed;
   score.outcome_time_s = 2.25;
   score.outcome_distance_m = 56.5;
+  score.relocalisations = 3;
+  score.relocalised_at_s = 1.75;
   score.reset_count = 1;
   score.coverage = 0.75;
   score.initialised_at_s = 0.5;
@@ -102,6 +104,8 @@ TEST(RunMetricsJson, IsReadAsItWasWritten) {
   EXPECT_EQ(document.at("camera").at("late_frame_ranges"), Json::parse("[[1, 1], [3, 4]]"));
   EXPECT_FALSE(json_from(RunMetrics()).contains("cameras"));
   const Json& estimator = document.at("estimators").at("f");
+  EXPECT_EQ(estimator.at("relocalisations"), 3);
+  EXPECT_EQ(estimator.at("relocalised_at_s"), 1.75);
   EXPECT_EQ(estimator.at("covariances"), Json::parse(R"({"stated": 16, "left_out": 2})"));
   const Json& consistency = estimator.at("alignments").at("sim3").at("consistency");
   EXPECT_EQ(consistency.at("honesty"), "overconfident");
@@ -141,6 +145,8 @@ TEST(RunMetricsJson, UnknownAndMissingFieldsAreNoFault) {
   const auto earlier = read_changed([](Json& document) {
     document["estimators"]["f"].erase("unanswered");
     document["estimators"]["f"].erase("position_auc_limit_m");
+    document["estimators"]["f"].erase("relocalisations");
+    document["estimators"]["f"].erase("relocalised_at_s");
     document["estimators"]["f"]["alignments"]["se3"].erase("position_auc");
     document["estimators"]["f"]["alignments"]["sim3"].erase("S_world_vo");
     document.erase("flight");
@@ -152,6 +158,8 @@ TEST(RunMetricsJson, UnknownAndMissingFieldsAreNoFault) {
   ASSERT_TRUE(estimator.score.alignments.contains(AlignmentMode::kSe3));
   EXPECT_FALSE(estimator.score.alignments.at(AlignmentMode::kSe3).position_auc.has_value());
   EXPECT_FALSE(estimator.score.position_auc_limit_m.has_value());
+  EXPECT_FALSE(estimator.score.relocalisations.has_value());
+  EXPECT_FALSE(estimator.score.relocalised_at_s.has_value());
 }
 
 TEST(RunMetricsJson, InvalidFieldIsNamed) {

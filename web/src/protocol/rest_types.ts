@@ -168,6 +168,10 @@ export interface EstimatorMetrics {
   outcome_time_s?: number | null;
   /** True path flown until then; absent in older runs. */
   outcome_distance_m?: number | null;
+  /** How often it found its map again after a loss; absent in older runs. */
+  relocalisations?: number | null;
+  /** Time of the first one in the flight. */
+  relocalised_at_s?: number | null;
   coverage?: number | null;
   alignments?: Record<string, AlignmentErrors>;
   dropped_frames?: number | null;

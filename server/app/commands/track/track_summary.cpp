@@ -73,8 +73,10 @@ std::string cost_text(const server::TrackedDataset& tracked, const server::Track
 
 std::string score_text(const evaluation::Score& score) {
   // Without the time of the outcome: it is in the data set's time base, often seconds since 1970.
-  return "outcome: " + std::string(evaluation::to_string(score.outcome)) + ", " +
-         coverage_text(score) + "\n" + alignment_table(score);
+  const int relocalisations = score.relocalisations.value_or(0);
+  return "outcome: " + std::string(evaluation::to_string(score.outcome)) +
+         (relocalisations > 0 ? ", relocalisations: " + std::to_string(relocalisations) : "") +
+         ", " + coverage_text(score) + "\n" + alignment_table(score);
 }
 
 }  // namespace

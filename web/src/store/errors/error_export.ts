@@ -57,6 +57,8 @@ function csv(entries: Entry[]): string {
     estimator.outcome,
     estimator.outcome_time_s ?? '',
     estimator.outcome_distance_m ?? '',
+    estimator.relocalisations ?? '',
+    estimator.relocalised_at_s ?? '',
     estimator.coverage ?? '',
     mode,
     ...errorCsvValues(errors),
@@ -68,6 +70,8 @@ function csv(entries: Entry[]): string {
     'outcome',
     'outcome_time_s',
     'outcome_distance_m',
+    'relocalisations',
+    'relocalised_at_s',
     'coverage',
     'alignment',
   ];

@@ -191,7 +191,17 @@ export function reportedVoidShare(metrics: Metrics | null): number | null {
 export function outcomeText(estimator: EstimatorMetrics): string {
   const { outcome, outcome_time_s: time_s, outcome_distance_m: distance_m } = estimator;
   if (outcome === '') return kNothing;
-  if (typeof time_s !== 'number' || outcome === 'COMPLETED') return outcome;
+  const relocalised = relocalisedText(estimator);
+  const addition = relocalised === '' ? '' : `; ${relocalised}`;
+  if (typeof time_s !== 'number' || outcome === 'COMPLETED') return `${outcome}${addition}`;
   const distance = typeof distance_m === 'number' ? `, ${formatNumber(distance_m, 0)} m` : '';
-  return `${outcome} at ${formatNumber(time_s, 1)} s${distance}`;
+  return `${outcome} at ${formatNumber(time_s, 1)} s${distance}${addition}`;
+}
+
+/** Empty if it never found its map again after a loss. */
+function relocalisedText({ relocalisations, relocalised_at_s: time_s }: EstimatorMetrics): string {
+  const times = relocalisations ?? 0;
+  if (times === 0 || typeof time_s !== 'number') return '';
+  const count = times === 1 ? '' : ` ${times} times, first`;
+  return `found its map again${count} at ${formatNumber(time_s, 1)} s`;
 }

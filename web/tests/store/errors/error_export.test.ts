@@ -13,6 +13,8 @@ function scored(id: string, title: string): WatchedRun {
         outcome: 'LOST',
         outcome_time_s: 3.14159,
         outcome_distance_m: 78.5,
+        relocalisations: 0,
+        relocalised_at_s: null,
         coverage: 0.5,
         alignments: {
           sim3: { scale: 1, position_rmse_m: 0.1234567890123 },
@@ -40,9 +42,11 @@ describe('exportErrors', () => {
       .split('\n');
     expect(lines).toHaveLength(3);
     expect(lines[0]).toContain(
-      'run,title,estimator,outcome,outcome_time_s,outcome_distance_m,coverage,alignment,scale',
+      'run,title,estimator,outcome,outcome_time_s,outcome_distance_m,relocalisations,relocalised_at_s,coverage,alignment,scale',
     );
-    expect(lines[1]).toMatch(/^r1,"a, ""b""",feature,LOST,3\.14159,78\.5,0\.5,init_scale,-2,1\.5,/);
+    expect(lines[1]).toMatch(
+      /^r1,"a, ""b""",feature,LOST,3\.14159,78\.5,0,,0\.5,init_scale,-2,1\.5,/,
+    );
     const cells = (line = '') => line.replace('"a, ""b"""', 'a').split(',');
     const [head, first] = [cells(lines[0]), cells(lines[1])];
     const cell = (name: string) => first[head.indexOf(name)];

@@ -3,6 +3,7 @@ import type { Metrics } from '../../../src/protocol/rest_types';
 import {
   alignmentModes,
   errorTable,
+  outcomeText,
   reportedVoidShare,
   texelsPerPixel,
   textureHint,
@@ -119,6 +120,26 @@ describe('errorTable', () => {
   it("offers the alignments in the metrics, the paper's first", () => {
     expect(alignmentModes(metrics)).toEqual(['init_scale', 'sim3']);
     expect(alignmentModes(null)).toEqual([]);
+  });
+});
+
+describe('outcomeText', () => {
+  const lost = { outcome: 'LOST', outcome_time_s: 12.3, outcome_distance_m: 500 };
+
+  it('says when an estimator found its map again', () => {
+    expect(outcomeText({ ...lost, relocalisations: 1, relocalised_at_s: 15.1 })).toBe(
+      'LOST at 12.3 s, 500 m; found its map again at 15.1 s',
+    );
+    expect(outcomeText({ outcome: 'COMPLETED', relocalisations: 2, relocalised_at_s: 4 })).toBe(
+      'COMPLETED; found its map again 2 times, first at 4.0 s',
+    );
+  });
+
+  it('says nothing of one that did not, and of older runs', () => {
+    expect(outcomeText({ ...lost, relocalisations: 0, relocalised_at_s: null })).toBe(
+      'LOST at 12.3 s, 500 m',
+    );
+    expect(outcomeText(lost)).toBe('LOST at 12.3 s, 500 m');
   });
 });
 
