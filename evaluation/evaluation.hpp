@@ -176,7 +176,8 @@ struct Score {
   std::optional<double> initialised_at_s;
   int frames = 0;  ///< frames of the flight
   int tracked_frames = 0;
-  /// Options::auc_limit_m of the alignments' position_auc; empty where they have none.
+  /// Options::auc_limit_m of the alignments' position_auc; empty where they have none, but not in
+  /// that of a flight without a scored pose, whose area is 0 by every alignment.
   std::optional<double> position_auc_limit_m;
   CovarianceCounts covariances;
   std::vector<std::int64_t> matched_t_ns;  ///< stamps of the matched poses, in time order

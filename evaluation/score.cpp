@@ -98,6 +98,7 @@ Score score(const Trajectory& T_world_camera_truth,
   if (result.outcome_time_s) {
     set_outcome_time(T_world_camera_truth, *result.outcome_time_s, &result);
   }
+  if (!options.flight.empty()) result.position_auc_limit_m = options.auc_limit_m;
   if (!matches) {
     for (const AlignmentMode mode : all_alignment_modes()) {
       result.unavailable[mode] = matches.error().message;
@@ -105,7 +106,6 @@ Score score(const Trajectory& T_world_camera_truth,
     return result;
   }
   for (const MatchedPose& match : *matches) result.matched_t_ns.push_back(match.t_ns);
-  if (!options.flight.empty()) result.position_auc_limit_m = options.auc_limit_m;
   const std::vector<HeldPose> held =
       held_poses(T_world_camera_truth, flown, longest_map(estimate), options);
   for (const AlignmentMode mode : all_alignment_modes()) {

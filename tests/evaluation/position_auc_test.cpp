@@ -128,6 +128,7 @@ TEST(PositionAuc, NeedsTheFramesOfTheFlight) {
   options.auc_limit_m = 40.0;
   const Score flown = score(truth, drifting(truth, 40.0), options);
   EXPECT_EQ(flown.position_auc_limit_m, 40.0);
+  EXPECT_EQ(score(truth, {}, options).position_auc_limit_m, 40.0) << "a flight without a pose";
   EXPECT_NEAR(flown.alignments.at(AlignmentMode::kNone).position_auc.value(), 0.5, 1e-12);
 }
 

@@ -87,6 +87,11 @@ Result<std::map<std::string, double>> values_of(const fs::path& sweep,
                                        {"reset_count", score.reset_count}};
   if (score.initialised_at_s) values["initialised_at_s"] = *score.initialised_at_s;
   const auto alignment = score.alignments.find(mode);
+  if (alignment != score.alignments.end()) {
+    if (alignment->second.position_auc) values["position_auc"] = *alignment->second.position_auc;
+  } else if (score.position_auc_limit_m && score.tracked_frames == 0) {
+    values["position_auc"] = 0.0;
+  }
   if (!success || alignment == score.alignments.end()) return values;
   values["position_rmse_m"] = alignment->second.position_m.rmse;
   values["position_rmse_hold_m"] = alignment->second.position_rmse_hold_m;

@@ -195,6 +195,7 @@ const std::vector<std::string>& condition_quantities() {
   static const std::vector<std::string> names{"position_rmse_m",
                                               "position_rmse_hold_m",
                                               "rotation_rmse_deg",
+                                              "position_auc",
                                               "coverage",
                                               "initialised_at_s",
                                               "reset_count"};

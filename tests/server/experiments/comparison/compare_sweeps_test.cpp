@@ -17,12 +17,15 @@ namespace fs = std::filesystem;
 using evaluation::AlignmentMode;
 using evaluation::Outcome;
 using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
 
 struct MadeFlight {
   double height_m = 0.0;
   std::optional<double> position_m;  ///< empty: it does not initialise
   Outcome outcome = Outcome::kCompleted;
   bool flown = true;  ///< false: it failed, out of memory or the like
+  /// Empty: by a version that did not know it; of no use without an initialisation.
+  std::optional<double> position_auc{};
 };
 
 void write_flight(const fs::path& sweep, const MadeFlight& made) {
@@ -30,11 +33,14 @@ void write_flight(const fs::path& sweep, const MadeFlight& made) {
   RunMetrics metrics;
   EstimatorMetrics& estimator = metrics.estimators["e"];
   estimator.score.outcome = made.outcome;
+  if (made.position_auc) estimator.score.position_auc_limit_m = 10.0;
   if (made.position_m) {
     estimator.score.initialised_at_s = 1.0;
     auto& score = estimator.score.alignments[AlignmentMode::kSim3];
     score.mode = AlignmentMode::kSim3;
     score.position_m.rmse = *made.position_m;
+    score.position_auc = made.position_auc;
+    estimator.score.tracked_frames = 1;
   }
   fs::create_directories(sweep / "runs" / id);
   std::ofstream(sweep / "runs" / id / "metrics.json") << json_from(metrics);
@@ -72,6 +78,23 @@ TEST(CompareSweeps, ALossOnAHardFlightIsNoGainOfAccuracy) {
   EXPECT_THAT(pairs.flights.at("position_rmse_m"), ElementsAre(1.1, 1.2));
   EXPECT_THAT(pairs.baseline.at("position_rmse_m"), ElementsAre(1.0, 1.0)) << "without 8.0";
   EXPECT_EQ(pairs.flights.at("initialised_at_s").size(), 3U);
+}
+
+TEST(CompareSweeps, TheAreaUnderTheCurveJudgesLostFlightsToo) {
+  const Outcome lost = Outcome::kLost;
+  const Outcome none = Outcome::kNotInitialised;
+  const PairedSweeps pairs = paired({{50, 0.5, lost, true, 0.3},
+                                     {100, 1.0, Outcome::kCompleted, true, 0.9},
+                                     {150, std::nullopt, none, true, 0.0}},
+                                    {{50, 1.0, Outcome::kCompleted, true, 0.8},
+                                     {100, 1.0, Outcome::kCompleted, true, 0.7},
+                                     {150, 1.0, Outcome::kCompleted, true, 0.6}});
+  EXPECT_THAT(pairs.flights.at("position_auc"), UnorderedElementsAre(0.3, 0.9, 0.0));
+  EXPECT_THAT(pairs.baseline.at("position_auc"), UnorderedElementsAre(0.8, 0.7, 0.6));
+  // A flight without it says nothing, also if it did not initialise.
+  const PairedSweeps old = paired({{50, std::nullopt, none}, {100, 1.0}},
+                                  {{50, 1.0, Outcome::kCompleted, true, 0.8}, {100, 1.0}});
+  EXPECT_FALSE(old.flights.contains("position_auc"));
 }
 
 TEST(CompareSweeps, FlightsThatTheSweepNoLongerHasAreLeftOut) {

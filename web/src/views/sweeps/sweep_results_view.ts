@@ -13,6 +13,7 @@ const kQuantities: Record<string, { label: string; unit: string; digits: number 
   position_rmse_m: { label: 'Position RMSE', unit: 'm', digits: 3 },
   position_rmse_hold_m: { label: 'Position RMSE, held', unit: 'm', digits: 3 },
   rotation_rmse_deg: { label: 'Rotation RMSE', unit: 'deg', digits: 3 },
+  position_auc: { label: 'Area under the curve of the error', unit: '', digits: 3 },
   coverage: { label: 'Coverage', unit: '', digits: 0 },
   initialised_at_s: { label: 'Initialised after', unit: 's', digits: 2 },
   reset_count: { label: 'Resets', unit: '', digits: 1 },
