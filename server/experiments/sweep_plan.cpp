@@ -40,7 +40,7 @@ void keep_estimators(Scenario& scenario, const std::vector<std::size_t>& kept) {
 }
 
 /// What is wrong in the cells of a sweep: each different error once.
-class CellErrors {
+class CellFaults {
  public:
   /// @param error  as of scenario_of
   void add(const SweepCell& cell, const Error& error) {
@@ -101,7 +101,7 @@ Result<SweepPlan> SweepPlan::make(const Sweep& sweep,
                                   std::vector<SweepCell> cells,
                                   const std::atomic<bool>* cancel) {
   SweepPlan plan(sweep, std::move(cells));
-  CellErrors errors;
+  CellFaults errors;
   for (std::size_t i = 0; i < plan.cells_.size(); ++i) {
     if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     const Result<Scenario> scenario = scenario_of(sweep, plan.cells_[i], 0);

@@ -110,6 +110,8 @@ svg .north{fill:var(--text);stroke:var(--page);stroke-width:2;paint-order:stroke
 .band-tracking{fill:var(--tracking)}
 .band-initialising{fill:var(--initialising)}
 .band-lost{fill:var(--lost)}
+.mark-yes{fill:var(--lost)}
+.mark-no{fill:none;stroke:var(--muted);stroke-width:2}
 footer{margin-top:3rem;padding-top:.6rem;border-top:2px solid var(--grid);color:var(--muted);
 font-size:.9rem}
 @media screen and (max-width:40rem){

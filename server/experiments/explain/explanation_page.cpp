@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "server/experiments/explain/cause_finding.hpp"
+#include "server/experiments/explain/cause_picture.hpp"
 #include "server/experiments/explain/explanation_words.hpp"
 #include "server/report/html_parts.hpp"
 #include "server/report/plot/band_plot.hpp"
@@ -28,12 +30,21 @@ plot::BandRow row_of(const Reflight& flight) {
   if (!flight.error.empty()) return row;
   const double begin_s = from_s + flight.score.initialised_at_s.value_or(to_s - from_s);
   if (begin_s > from_s) row.bands.push_back({from_s, begin_s, BandKind::kInitialising});
-  const bool lost = flight.failed() && flight.score.initialised_at_s;
+  // One that initialises late tracks from then on.
+  const bool lost = flight.failed() && flight.score.initialised_at_s &&
+                    flight.score.outcome != evaluation::Outcome::kInitLate;
   const double end_s =
       lost ? std::clamp(from_s + flight.score.outcome_time_s.value_or(0.0), begin_s, to_s) : to_s;
   if (end_s > begin_s) row.bands.push_back({begin_s, end_s, BandKind::kTracking});
   if (to_s > end_s) row.bands.push_back({end_s, to_s, BandKind::kLost});
   return row;
+}
+
+std::string causes_of(const std::vector<CauseFinding>& findings) {
+  return html::figure("Causes.",
+                      "Necessary: without it the estimator survives. Sufficient: with everything "
+                      "else taken away it still fails.",
+                      cause_picture(findings));
 }
 
 std::string picture_of(const Explanation& explanation) {
@@ -85,6 +96,9 @@ std::string page_of(const Explanation& explanation, const std::filesystem::path&
   const std::vector<std::string> sentences = sentences_of(explanation);
   for (std::size_t i = 0; i < sentences.size(); ++i) {
     page += html::paragraph(sentences[i], i == 0 ? "verdict" : "");
+  }
+  if (const auto findings = findings_of(explanation); !findings.empty()) {
+    page += html::heading(2, "Causes") + causes_of(findings);
   }
   if (!explanation.flights.empty()) {
     page += html::heading(2, "Flights") + picture_of(explanation) + table_of(explanation, folder);

@@ -8,7 +8,8 @@
 
 namespace overfly::server::experiments {
 
-/// The answer in sentences, a picture of all flights, and a table that links their run folders.
+/// The answer in sentences, a picture of the causes and one of all flights, and a table that links
+/// their run folders.
 /// @param folder  in which the page will lie: links are relative to it
 [[nodiscard]] std::string page_of(const Explanation& explanation,
                                   const std::filesystem::path& folder);

@@ -104,6 +104,11 @@ std::string outcome_words(const evaluation::Score& score) {
   return text;
 }
 
+std::string margin_words(const CauseMargin& margin) {
+  return "survives " + percent_words(margin.survives_share) + " of it and fails at " +
+         percent_words(margin.fails_share);
+}
+
 std::string result_words(const Reflight& flight) {
   if (!flight.error.empty()) return "no result: " + flight.error;
   return (flight.survived ? "survives: " : "fails: ") + outcome_words(flight.score);

@@ -17,4 +17,7 @@ namespace overfly::server::experiments {
 /// "survives", "fails: LOST 3.2 s after its start", "no result: ..."
 [[nodiscard]] std::string result_words(const Reflight& flight);
 
+/// "survives 12.5 % of it and fails at 25 %"
+[[nodiscard]] std::string margin_words(const CauseMargin& margin);
+
 }  // namespace overfly::server::experiments

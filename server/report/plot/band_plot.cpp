@@ -9,11 +9,13 @@
 namespace overfly::server::plot {
 namespace {
 
+/// Room for the names of the rows, and at most.
 constexpr double kNamesPx = 200.0;
+constexpr double kMostNamesPx = 330.0;
 constexpr double kEndPx = 16.0;
 constexpr double kRowPx = 30.0;
 constexpr double kBarPx = 20.0;
-constexpr std::size_t kNameCharacters = 28;
+constexpr std::size_t kNameCharacters = 46;
 
 struct Look {
   const char* css_class;
@@ -56,9 +58,15 @@ std::string bar(double x, double width, double bottom, const Look& look) {
          "\"/>\n";
 }
 
-std::string bands_legend(double* height) {
+double names_px(const std::vector<BandRow>& rows) {
+  double widest = kNamesPx;
+  for (const BandRow& row : rows) widest = std::max(widest, text_width_px(row.label) + 14.0);
+  return std::min(widest, kMostNamesPx);
+}
+
+std::string bands_legend(double left_px, double* height) {
   std::string markup;
-  double x = kNamesPx;
+  double x = left_px;
   for (const BandKind kind : {BandKind::kTracking, BandKind::kInitialising, BandKind::kLost}) {
     const Look look = look_of(kind);
     markup += bar(x, 22.0, 22.0, look);
@@ -97,12 +105,13 @@ std::vector<Band> joined_bands(const std::vector<Band>& bands,
 
 std::string svg_of(const BandPlot& plot) {
   const Range range = usable(plot.x_range);
-  const double width = plot.width_px - kNamesPx - kEndPx;
+  const double left = names_px(plot.rows);
+  const double width = plot.width_px - left - kEndPx;
   const auto px = [&](double x) {
-    return kNamesPx + width * std::clamp((x - range.low) / range.span(), 0.0, 1.0);
+    return left + width * std::clamp((x - range.low) / range.span(), 0.0, 1.0);
   };
   double top = 0.0;
-  std::string body = bands_legend(&top);
+  std::string body = bands_legend(left, &top);
   const double bottom = top + kRowPx * static_cast<double>(plot.rows.size()) + 4.0;
   const Ticks ticks = nice_ticks(range, 9);
   for (const double value : ticks.values) {
@@ -113,16 +122,16 @@ std::string svg_of(const BandPlot& plot) {
   for (const BandRow& row : plot.rows) {
     row_bottom += kRowPx;
     body += svg_text(
-        kNamesPx - 10.0, row_bottom - 9.0, "end", "key", label_text(row.label, kNameCharacters));
+        left - 10.0, row_bottom - 9.0, "end", "key", label_text(row.label, kNameCharacters));
     for (const Band& band : joined_bands(row.bands, range)) {
       if (band.kind == BandKind::kNone) continue;
       // A state of a single frame stays visible.
       const double size = std::max(px(band.to) - px(band.from), 0.8);
       body += bar(px(band.from), size, row_bottom - 4.0, look_of(band.kind));
     }
-    body += svg_line(kNamesPx, row_bottom - 4.0, kNamesPx + width, row_bottom - 4.0, "axis");
+    body += svg_line(left, row_bottom - 4.0, left + width, row_bottom - 4.0, "axis");
   }
-  body += svg_text(kNamesPx + 0.5 * width, bottom + 35.0, "middle", "label", plot.x_label);
+  body += svg_text(left + 0.5 * width, bottom + 35.0, "middle", "label", plot.x_label);
   return svg_head(plot.id, plot.title, plot.description, plot.width_px, bottom + 42.0) + body +
          "</svg>\n";
 }

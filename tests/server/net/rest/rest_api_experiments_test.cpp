@@ -80,10 +80,16 @@ void RestApiTest::check_sweep_starts() {
     }
     return false;
   };
-  for (int turns = 0; turns < 1000 && flies(); ++turns) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  const auto wait_for_its_end = [&] {
+    for (int turns = 0; turns < 1000 && flies(); ++turns) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  };
+  wait_for_its_end();
   check("POST", go_on, all + "/own/continue", 202, "{}", kJson);
+  wait_for_its_end();
+  check("DELETE", all + "/{name}", all + "/own", 204);
+  check("DELETE", all + "/{name}", all + "/own", 404);
 }
 
 void RestApiTest::check_studies() {

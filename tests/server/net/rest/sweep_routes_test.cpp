@@ -65,6 +65,7 @@ TEST_F(SweepRoutesTest, DeletesASweepWithItsFlights) {
 
 TEST_F(SweepRoutesTest, DeletesNothingElse) {
   const fs::path folder = server_->folder() / "sweeps";
+  for (const char* name : {"notes", ".frame_cache"}) fs::create_directories(folder / name);
   write_text(folder / "notes/mine.txt", "not a sweep");
   write_text(folder / ".frame_cache/x", "");
   for (const char* name : {"notes", ".frame_cache", "nobody", "..", "%2e%2e", "a%2fb"}) {

@@ -101,10 +101,12 @@ export interface ReflightBands {
 }
 
 export function bandsOf(flight: Reflight): ReflightBands | null {
-  const { error, from_s, to_s, initialised_at_s, survived, outcome_time_s } = flight;
+  const { error, from_s, to_s, initialised_at_s, survived, outcome, outcome_time_s } = flight;
   if (error !== null) return null;
   const initialised_s = Math.min(to_s, from_s + (initialised_at_s ?? to_s - from_s));
-  const lost = survived === false && initialised_at_s !== null && outcome_time_s !== null;
+  // One that initialises late tracks from then on.
+  const failed = survived === false && outcome !== 'INIT_LATE';
+  const lost = failed && initialised_at_s !== null && outcome_time_s !== null;
   const lost_s = lost ? Math.min(to_s, Math.max(initialised_s, from_s + outcome_time_s)) : to_s;
   return { initialised_s, lost_s };
 }

@@ -69,6 +69,8 @@ describe('study words', () => {
     expect(bandsOf(reflight({ survived: true }))).toEqual({ initialised_s: 3, lost_s: 12 });
     const never = reflight({ initialised_at_s: null, outcome_time_s: null });
     expect(bandsOf(never)).toEqual({ initialised_s: 12, lost_s: 12 });
+    const late = reflight({ outcome: 'INIT_LATE', initialised_at_s: 5, outcome_time_s: 5 });
+    expect(bandsOf(late)).toEqual({ initialised_s: 7, lost_s: 12 });
     expect(bandsOf(reflight({ error: 'exit code 1' }))).toBeNull();
     expect(spanOf(explanation({ flights: [reflight({ from_s: 0, to_s: 13 })] }))).toEqual([0, 13]);
     expect(reflightText(reflight())).toBe('fails: LOST 6.0 s after its start');
