@@ -369,8 +369,7 @@ TEST_F(ExplainRun, JsonAndPageSayTheSame) {
   EXPECT_THAT(page, HasSubstr("Why p failed"));
   EXPECT_THAT(page, HasSubstr("href=\"" + run_name + "/\""));
   EXPECT_THAT(page, HasSubstr("<svg"));
-  EXPECT_THAT(page,
-              HasSubstr(words_for(Cause::kBlur) + ": necessary yes, sufficient yes"));
+  EXPECT_THAT(page, HasSubstr(words_for(Cause::kBlur) + ": necessary yes, sufficient yes"));
   EXPECT_THAT(page, ::testing::Not(HasSubstr("<script")));
 }
 
