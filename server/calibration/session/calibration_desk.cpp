@@ -229,11 +229,12 @@ Result<std::string> CalibrationDesk::begin(const DeskRequest& request) {
   return entries_.back().id;
 }
 
-Result<std::shared_ptr<CalibrationSession>> CalibrationDesk::session(const std::string& id) {
+Result<std::shared_ptr<CalibrationSession>> CalibrationDesk::session(const std::string& id,
+                                                                     bool keeps_it) {
   const std::lock_guard lock(mutex_);
   for (const Entry& entry : entries_) {
     if (entry.id != id) continue;
-    entry.session->touch();
+    if (keeps_it) entry.session->touch();
     return entry.session;
   }
   return Error{ErrorCode::kNotFound, "no such calibration is in progress: it was closed"};

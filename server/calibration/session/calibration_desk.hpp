@@ -63,8 +63,9 @@ class CalibrationDesk {
   /// Errors: kNotFound for a source; kInvalidArgument for a board that is not suitable; kConflict
   /// with kMostSessions of which none was left alone, or while one that gave way has yet to end.
   [[nodiscard]] Result<std::string> begin(const DeskRequest& request);
-  /// Marks it as being looked at. Errors: kNotFound.
-  [[nodiscard]] Result<std::shared_ptr<CalibrationSession>> session(const std::string& id);
+  /// @param keeps_it  it counts as being looked at. Errors: kNotFound.
+  [[nodiscard]] Result<std::shared_ptr<CalibrationSession>> session(const std::string& id,
+                                                                    bool keeps_it = true);
   struct Entry {
     std::string id;
     std::shared_ptr<CalibrationSession> session;

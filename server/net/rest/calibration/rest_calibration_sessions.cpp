@@ -188,7 +188,9 @@ using SessionHandler = HttpResponse (*)(const RouteCall&, CalibrationSession&);
 /// A handler of a request that names a session.
 RestRouter::Handler of_session(CalibrationDesk* desk, SessionHandler handler) {
   return [desk, handler](const RouteCall& call, const Respond& respond) {
-    const auto session = desk->session(call.path.at("id"));
+    // A viewer's page must not hold a camera open that its operator has left.
+    const bool keeps_it = call.request.access == Access::kOperator;
+    const auto session = desk->session(call.path.at("id"), keeps_it);
     respond(session ? handler(call, **session) : error_response(session.error()));
   };
 }
