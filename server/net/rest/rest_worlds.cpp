@@ -132,10 +132,11 @@ void answer_heights(const WorldRoutes& routes, const RouteCall& call, const Resp
 void answer_make(const WorldRoutes& routes,
                  const RouteCall& call,
                  const Respond& respond,
-                 const std::shared_ptr<const void>& taken) {
+                 const std::shared_ptr<Slot>& taken) {
   std::shared_ptr<ProgressBoard::Entry> entry;
   if (const std::string id = call.query_or("progress", ""); !id.empty()) {
     if (!is_progress_id(id)) {
+      taken->release();
       respond(error_response(
           bad_query("progress", id, "8 to 64 letters, digits and '-', of the client's choice")));
       return;
@@ -155,6 +156,7 @@ void answer_make(const WorldRoutes& routes,
                           if (entry) entry->set("making", share);
                         });
                     if (entry) entry->end();
+                    taken->release();
                     return made;
                   });
 }

@@ -203,7 +203,9 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
                              call,
                              respond,
                              [sweeps, taken](const SweepBody& body, Cancel cancel) {
-                               return check_sweep(*sweeps, body, cancel);
+                               HttpResponse answer = check_sweep(*sweeps, body, cancel);
+                               taken->release();
+                               return answer;
                              });
       });
   router->add(
