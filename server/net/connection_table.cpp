@@ -11,6 +11,10 @@ bool is_http(ConnectionPhase phase) {
          phase == ConnectionPhase::kAnswering || phase == ConnectionPhase::kSending;
 }
 
+bool is_web_socket(ConnectionPhase phase) {
+  return phase == ConnectionPhase::kViewer || phase == ConnectionPhase::kOnlooker;
+}
+
 }  // namespace
 
 std::size_t& ConnectionTable::counted(ConnectionPhase phase) {
@@ -41,6 +45,18 @@ bool ConnectionTable::close_oldest(ConnectionPhase phase) {
   return true;
 }
 
+bool ConnectionTable::is_full_for(ConnectionPhase phase) const {
+  const std::size_t open = counts_[static_cast<std::size_t>(ConnectionPhase::kViewer)] +
+                           counts_[static_cast<std::size_t>(ConnectionPhase::kOnlooker)];
+  const std::size_t kept = phase == ConnectionPhase::kOnlooker ? limits_.max_viewers / 8 : 0;
+  return open + kept >= limits_.max_viewers;
+}
+
+bool ConnectionTable::has_room_for(ConnectionPhase phase) const {
+  const std::lock_guard lock(mutex_);
+  return !is_full_for(phase);
+}
+
 std::unique_ptr<ConnectionTable::Place> ConnectionTable::add(Close close) {
   auto place = std::make_unique<Place>(*this, ++last_number_);
   const std::lock_guard lock(mutex_);
@@ -56,7 +72,7 @@ bool ConnectionTable::enter(std::uint64_t number, ConnectionPhase phase) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_.at(number);
   if (entry.phase == ConnectionPhase::kClosing) return false;
-  if (phase == ConnectionPhase::kViewer && counted(phase) >= limits_.max_viewers) return false;
+  if (is_web_socket(phase) && is_full_for(phase)) return false;
   if (is_http(phase) && !is_http(entry.phase)) {
     const std::size_t http =
         counted(ConnectionPhase::kIdle) + counted(ConnectionPhase::kReceiving) +

@@ -21,13 +21,15 @@ enum class ConnectionPhase {
   kAnswering,  ///< HTTP: the server is working on the answer
   kSending,    ///< HTTP: sends an answer
   kViewer,     ///< a WebSocket
+  kOnlooker,   ///< a WebSocket of a client that may change nothing
   kClosing,    ///< was asked to end; not counted any more
 };
 
 struct ConnectionLimits {
   std::size_t max_strangers = 64;  ///< beyond: the oldest one is closed
   std::size_t max_http = 128;      ///< beyond: the one idle longest is closed; if none is idle: 503
-  std::size_t max_viewers = 64;    ///< beyond: 503
+  /// WebSockets; beyond: 503. An eighth of them is kept for clients that may change something.
+  std::size_t max_viewers = 64;
 };
 
 /// Thread-safe.
@@ -59,6 +61,8 @@ class ConnectionTable {
   /// Adds a new connection as a stranger. Always succeeds; the oldest stranger is closed if needed.
   [[nodiscard]] std::unique_ptr<Place> add(Close close);
   [[nodiscard]] std::size_t count(ConnectionPhase phase) const;
+  /// @param phase  kViewer or kOnlooker
+  [[nodiscard]] bool has_room_for(ConnectionPhase phase) const;
 
  private:
   struct Entry {
@@ -69,13 +73,14 @@ class ConnectionTable {
   bool enter(std::uint64_t number, ConnectionPhase phase);
   void remove(std::uint64_t number);
   [[nodiscard]] std::size_t& counted(ConnectionPhase phase);
+  [[nodiscard]] bool is_full_for(ConnectionPhase phase) const;  ///< @pre mutex_ is held
   void change(Entry* entry, ConnectionPhase phase);
   bool close_oldest(ConnectionPhase phase);
 
   const ConnectionLimits limits_;
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Entry> entries_;
-  std::array<std::size_t, 7> counts_{};
+  std::array<std::size_t, 8> counts_{};
   std::atomic<std::uint64_t> last_number_{0};
   std::uint64_t last_since_ = 0;
 };

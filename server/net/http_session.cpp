@@ -41,6 +41,10 @@ constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
 constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
 constexpr std::chrono::seconds kDrainLimit{2};
 
+ConnectionPhase web_socket_phase(const HttpRequest& request) {
+  return request.access == Access::kViewer ? ConnectionPhase::kOnlooker : ConnectionPhase::kViewer;
+}
+
 class HttpSession final : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerContext> context)
@@ -193,7 +197,7 @@ void HttpSession::upgrade() {
     write(error_response(service.error()));
     return;
   }
-  if (!place_->enter(ConnectionPhase::kViewer)) {
+  if (!place_->enter(web_socket_phase(request_))) {
     keep_alive_ = false;
     write(too_many_viewers(context_->options.limits.connections.max_viewers));
     return;
@@ -253,8 +257,9 @@ void HttpSession::dispatch() {
 
 /// The answer that the upgrade would have got, because a browser does not show that to its page.
 HttpResponse HttpSession::stream_without_upgrade() const {
-  const std::size_t most = context_->options.limits.connections.max_viewers;
-  if (context_->connections.count(ConnectionPhase::kViewer) >= most) return too_many_viewers(most);
+  if (!context_->connections.has_room_for(web_socket_phase(request_))) {
+    return too_many_viewers(context_->options.limits.connections.max_viewers);
+  }
   return error_response(426, "upgrade_required", "this is a WebSocket: request an upgrade");
 }
 

@@ -105,11 +105,11 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
   add_trajectory_routes(&context->router, &context->trajectories, readers);
   add_difference_routes(&context->router, &runs, readers);
   add_report_routes(&context->router, &runs, drawers);
-  const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers};
+  const SweepRoutes sweeps{&context->sweeps, runs.sweeps_folder(), readers, &views};
   add_sweep_routes(&context->router, sweeps);
   add_sweep_table_routes(&context->router, sweeps);
   add_sweep_start_routes(&context->router, sweeps);
-  add_study_routes(&context->router, {&context->studies, readers});
+  add_study_routes(&context->router, {&context->studies, readers, &views});
   add_calibration_session_routes(&context->router, &context->calibrations);
   add_calibration_routes(&context->router, &context->calibrations);
   context->offload = [workers = &server->impl_->workers](std::function<void()> work) {

@@ -22,6 +22,15 @@ bool is_linked(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
+/// Whether the path leads to the open file: the folder may have been renamed, and another one made
+/// in its place.
+bool leads_to(const fs::path& file, int descriptor) {
+  struct stat here {};
+  struct stat open {};
+  return ::lstat(file.c_str(), &here) == 0 && ::fstat(descriptor, &open) == 0 &&
+         here.st_dev == open.st_dev && here.st_ino == open.st_ino;
+}
+
 }  // namespace
 
 fs::path RunLock::file_of(const fs::path& folder) { return folder / ".running"; }
@@ -76,7 +85,7 @@ RunLock& RunLock::operator=(RunLock&& other) noexcept {
 
 RunLock::~RunLock() {
   if (descriptor_ < 0) return;
-  ::unlink(file_.c_str());
+  if (leads_to(file_, descriptor_)) ::unlink(file_.c_str());
   ::close(descriptor_);
 }
 

@@ -33,7 +33,7 @@ Result<fs::path> put_aside(const fs::path& folder) {
 
 }  // namespace
 
-Status remove_run_folder(const fs::path& folder) {
+Result<fs::path> put_run_folder_aside(const fs::path& folder) {
   std::error_code failure;
   std::optional<RunLock> lock;
   // Of a symbolic link only the link is deleted: nothing is written to its target.
@@ -42,8 +42,13 @@ Status remove_run_folder(const fs::path& folder) {
     if (!taken && FileStamp::of(folder).exists) return taken.error();
     if (taken) lock = std::move(*taken);
   }
-  const Result<fs::path> aside = put_aside(folder);
+  return put_aside(folder);
+}
+
+Status remove_run_folder(const fs::path& folder) {
+  const Result<fs::path> aside = put_run_folder_aside(folder);
   if (!aside) return aside.error();
+  std::error_code failure;
   fs::remove_all(*aside, failure);
   if (failure) return Error{ErrorCode::kIo, folder.string() + ": " + failure.message()};
   return {};

@@ -150,9 +150,9 @@ describe('trajectories of files and logs', { skip, timeout: 600_000 }, () => {
     const [kitti, euroc] = evaluate('truth.tum', 'kitti/00.txt', 'euroc.csv');
     const csv = await copyFrom(page, kCopy, 'CSV');
     const { rows, numbers } = compare(csv, { [kKitti]: kitti, [kEuroc]: euroc });
-    assert.equal(rows.length, 14);
+    assert.equal(rows.length, 16);
     // Eight errors, drift over seven lengths, and three intervals between fixes.
-    assert.equal(numbers, 14 * (8 + 2 * 7 + 2 * 3));
+    assert.equal(numbers, 16 * (8 + 2 * 7 + 2 * 3));
     const markdown = (await copyFrom(page, kCopy, 'Markdown')).trimEnd().split('\n');
     const latex = await copyFrom(page, kCopy, 'LaTeX');
     assert.match(latex, /^\\begin\{tabular\}\{llr+\}\n.*\\end\{tabular\}\n$/s);

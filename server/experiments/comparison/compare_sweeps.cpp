@@ -89,8 +89,8 @@ Result<std::map<std::string, double>> values_of(const fs::path& sweep,
   const auto alignment = score.alignments.find(mode);
   if (alignment != score.alignments.end()) {
     if (alignment->second.position_auc) values["position_auc"] = *alignment->second.position_auc;
-  } else if (score.position_auc_limit_m && score.tracked_frames == 0) {
-    values["position_auc"] = 0.0;
+  } else if (score.position_auc_limit_m) {
+    values["position_auc"] = 0.0;  // No pose of it could be aligned.
   }
   if (!success || alignment == score.alignments.end()) return values;
   values["position_rmse_m"] = alignment->second.position_m.rmse;

@@ -1,6 +1,7 @@
 #include "server/experiments/service/sweep_service.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -50,7 +51,9 @@ Json envelope_of(const fs::path& folder, const Json& entry) {
 }  // namespace
 
 SweepService::SweepService(RunManager& runs, SweepServiceOptions options)
-    : runs_(runs), options_(std::move(options)), folder_(runs.sweeps_folder()) {}
+    : runs_(runs), options_(std::move(options)), folder_(runs.sweeps_folder()) {
+  if (!folder_.empty()) remove_leftovers(folder_);
+}
 
 std::size_t SweepService::most_jobs() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
@@ -265,18 +268,49 @@ Status SweepService::cancel(const std::string& name) {
 
 Status SweepService::remove(const std::string& name) {
   // So that it is not continued meanwhile.
-  const std::lock_guard launching(launching_);
+  const std::unique_lock launching(launching_, std::try_to_lock);
   const Result<Json> known = sweep_entry(folder_, name);
   if (!known) return known.error();
+  if (!launching) {
+    return Error{ErrorCode::kConflict, "a sweep is being started or deleted: try again soon"};
+  }
   {
     const std::lock_guard lock(mutex_);
     if (is_busy() && flight_->name == name) {
       return Error{ErrorCode::kConflict,
                    "sweep \"" + name + "\" is flying: cancel it and wait for its end"};
     }
+  }
+  // Through a symbolic link too.
+  if (RunLock::held(folder_ / name)) {
+    return Error{ErrorCode::kConflict, "sweep \"" + name + "\" is flown by another process"};
+  }
+  const Result<fs::path> aside = put_run_folder_aside(folder_ / name);
+  if (!aside) return aside.error();
+  {
+    const std::lock_guard lock(mutex_);
     problems_.erase(name);
   }
-  return remove_run_folder(folder_ / name);
+  delete_later(*aside);
+  return {};
+}
+
+void SweepService::delete_later(const fs::path& folder) {
+  const auto work = [this, folder] {
+    std::error_code failure;
+    fs::remove_all(folder, failure);
+    if (failure)
+      log("error", folder.filename().string(), "cannot be deleted: " + failure.message());
+  };
+  const std::lock_guard lock(mutex_);
+  std::erase_if(deletions_, [](const std::future<void>& deletion) {
+    return deletion.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  try {
+    deletions_.push_back(std::async(std::launch::async, work));
+  } catch (const std::system_error&) {
+    work();  // There is no thread for it.
+  }
 }
 
 void SweepService::request_stop() {

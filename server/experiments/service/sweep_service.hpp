@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/experiments/envelope/envelope.hpp"
@@ -88,7 +90,8 @@ class SweepService {
   /// Ends the flights in progress; the results stay.
   /// Errors: kNotFound; kConflict if this server does not fly it.
   [[nodiscard]] Status cancel(const std::string& name);
-  /// Deletes a sweep with the runs of its flights.
+  /// Deletes a sweep with the runs of its flights. Its name is free at once; its files go later, on
+  /// a thread of their own. Of a symbolic link only the link is deleted.
   /// Errors: kNotFound; kConflict while it is flown, also by another process; kIo.
   [[nodiscard]] Status remove(const std::string& name);
   /// Cancels the sweep in progress and refuses further ones.
@@ -115,6 +118,7 @@ class SweepService {
   [[nodiscard]] Status fly_into(const Flight& flight, const std::filesystem::path& folder);
   void log(const char* level, const std::string& name, const std::string& text) const;
   void add_state(nlohmann::json& entry) const;
+  void delete_later(const std::filesystem::path& folder);
 
   // @pre for those below: mutex_ is held
   [[nodiscard]] bool is_busy() const { return flight_ && !flight_->over; }
@@ -128,6 +132,7 @@ class SweepService {
   std::shared_ptr<Flight> flight_;               ///< the last one
   std::map<std::string, std::string> problems_;  ///< by sweep
   std::thread thread_;
+  std::vector<std::future<void>> deletions_;  ///< in progress; guarded by mutex_
 };
 
 }  // namespace overfly::server::experiments

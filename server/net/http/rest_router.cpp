@@ -7,6 +7,7 @@
 
 #include "core/barrier.hpp"
 #include "server/net/http/error_response.hpp"
+#include "server/net/http/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -83,6 +84,23 @@ void RestRouter::add_calculation(const std::string& pattern,
                                  std::vector<std::string> known_query) {
   add("POST", pattern, std::move(handler), std::move(known_query));
   routes_.back().changes = false;
+}
+
+void RestRouter::add_long_calculation(const std::string& pattern, Handler handler) {
+  const auto limited = [handler = std::move(handler), taken = viewers_calculations_](
+                           const RouteCall& call, const Respond& respond) {
+    if (call.request.access == Access::kOperator) return handler(call, respond);
+    const std::shared_ptr<Slot> slot = take_slot(taken, 1);
+    if (!slot) {
+      return respond(error_response(
+          503, "too_many_calculations", "another viewer's request is calculated: try again soon"));
+    }
+    handler(call, [slot, respond](HttpResponse response) {
+      slot->release();
+      respond(std::move(response));
+    });
+  };
+  add_calculation(pattern, limited);
 }
 
 bool RestRouter::changes(const HttpRequest& request) const {

@@ -1,6 +1,7 @@
 // Finds the handler of a REST request by method and path.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -59,6 +60,9 @@ class RestRouter {
   void add_calculation(const std::string& pattern,
                        Handler handler,
                        std::vector<std::string> known_query = {});
+  /// The same for one that may take a reading thread for long: of those of viewers one is answered
+  /// at a time, others with 503, so that operators find a thread.
+  void add_long_calculation(const std::string& pattern, Handler handler);
   /// Whether a request would change something on the server: any but GET and HEAD of a known route
   /// that does not only calculate.
   [[nodiscard]] bool changes(const HttpRequest& request) const;
@@ -87,6 +91,7 @@ class RestRouter {
   void find_and_handle(const HttpRequest& request, const Respond& respond) const;
   std::function<void(const std::string&)> report_;
   std::vector<Route> routes_;
+  std::shared_ptr<std::atomic<int>> viewers_calculations_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace overfly::net

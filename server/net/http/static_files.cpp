@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -37,17 +38,26 @@ constexpr std::array<std::pair<const char*, const char*>, 18> kMimeTypes = {{
 }};
 
 /// Quoted size and modification time; changes whenever a build replaces the file.
-std::string etag_of(const fs::path& file, std::uintmax_t size_bytes) {
+std::string etag_of(const fs::path& file, std::uintmax_t size_bytes, const char* variant) {
   std::error_code ignored;
   const auto time = fs::last_write_time(file, ignored).time_since_epoch().count();
   std::string etag = "\"";
-  etag.append(std::to_string(size_bytes)).append("-").append(std::to_string(time)).append("\"");
+  etag.append(std::to_string(size_bytes)).append("-").append(std::to_string(time));
+  etag.append(variant).append("\"");
   return etag;
 }
 
 bool is_below(const fs::path& folder, const fs::path& file) {
   const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   return end == folder.end();
+}
+
+/// Marks a page for a viewer, so that it does not show for a moment what its user may not do.
+void mark_for_viewer(std::string& page) {
+  constexpr std::string_view kRoot = "<html";
+  if (const std::size_t at = page.find(kRoot); at != std::string::npos) {
+    page.insert(at + kRoot.size(), " data-access=\"viewer\"");
+  }
 }
 
 HttpResponse static_response(const fs::path& root,
@@ -57,7 +67,9 @@ HttpResponse static_response(const fs::path& root,
   const std::uintmax_t size_bytes = fs::file_size(file, error);
   if (error) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
   HttpResponse response;
-  const std::string etag = etag_of(file, size_bytes);
+  const bool marked = request.access == Access::kViewer && file.extension() == ".html";
+  // Otherwise a browser that changes its token would keep the other one's page.
+  const std::string etag = etag_of(file, size_bytes, marked ? "-viewer" : "");
   const bool hashed = is_below(root / "assets", file);
   response.headers.emplace_back("ETag", etag);
   response.headers.emplace_back("Cache-Control",
@@ -71,6 +83,7 @@ HttpResponse static_response(const fs::path& root,
   Result<std::string> text = read_file_text(file, kMaxBytes);
   if (!text) return error_response({ErrorCode::kIo, "cannot read " + file.filename().string()});
   response.body = std::move(*text);
+  if (marked) mark_for_viewer(response.body);
   return response;
 }
 

@@ -76,6 +76,7 @@ struct SweepRoutes {
   server::experiments::SweepService* sweeps = nullptr;
   std::filesystem::path folder;  ///< of the sweeps
   ReadingRoutes readers;
+  server::ViewService* views = nullptr;
 };
 /// sweeps, sweeps/{name}
 void add_sweep_routes(RestRouter* router, const SweepRoutes& routes);
@@ -87,6 +88,7 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes);
 struct StudyRoutes {
   server::experiments::StudyService* studies = nullptr;
   ReadingRoutes readers;
+  server::ViewService* views = nullptr;
 };
 /// studies, studies/{name} and what is in them
 void add_study_routes(RestRouter* router, const StudyRoutes& routes);

@@ -161,10 +161,10 @@ void add_trajectory_routes(RestRouter* router,
                 answer_series(library, readers, call, respond);
               },
               {"points"});
-  router->add_calculation("/api/v1/evaluations",
-                          [library, readers](const RouteCall& call, const Respond& respond) {
-                            answer_evaluation(library, readers, call, respond);
-                          });
+  router->add_long_calculation("/api/v1/evaluations",
+                               [library, readers](const RouteCall& call, const Respond& respond) {
+                                 answer_evaluation(library, readers, call, respond);
+                               });
 }
 
 }  // namespace overfly::net

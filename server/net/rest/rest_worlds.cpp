@@ -9,8 +9,8 @@
 #include "core/motion/pose.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/http/json_text.hpp"
+#include "server/net/http/rest_slots.hpp"
 #include "server/net/rest/rest_api.hpp"
-#include "server/net/rest/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {

@@ -111,7 +111,7 @@ std::string svg_of(const BandPlot& plot) {
     return left + width * std::clamp((x - range.low) / range.span(), 0.0, 1.0);
   };
   double top = 0.0;
-  std::string body = bands_legend(left, &top);
+  std::string body = bands_legend(kNamesPx, &top);
   const double bottom = top + kRowPx * static_cast<double>(plot.rows.size()) + 4.0;
   const Ticks ticks = nice_ticks(range, 9);
   for (const double value : ticks.values) {

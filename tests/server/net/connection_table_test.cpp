@@ -33,6 +33,7 @@ class Table {
   }
   void drop(std::size_t index) { places_.at(index).reset(); }
   [[nodiscard]] std::size_t count(Phase phase) const { return table_.count(phase); }
+  [[nodiscard]] bool has_room_for(Phase phase) const { return table_.has_room_for(phase); }
   std::vector<int> closed;
 
  private:
@@ -94,6 +95,17 @@ TEST(ConnectionTable, ViewersTakeNoPlaceOfRequests) {
   table.drop(0);
   EXPECT_TRUE(table.add().enter(Phase::kViewer));
   EXPECT_TRUE(table.closed.empty());
+}
+
+TEST(ConnectionTable, OnlookersLeaveAnEighthOfThePlaces) {
+  Table table({20, 1, 16});
+  for (int i = 0; i < 14; ++i) ASSERT_TRUE(table.add().enter(Phase::kOnlooker)) << i;
+  EXPECT_FALSE(table.has_room_for(Phase::kOnlooker));
+  EXPECT_FALSE(table.add().enter(Phase::kOnlooker));
+  EXPECT_TRUE(table.has_room_for(Phase::kViewer));
+  EXPECT_TRUE(table.add().enter(Phase::kViewer));
+  EXPECT_TRUE(table.add().enter(Phase::kViewer));
+  EXPECT_FALSE(table.add().enter(Phase::kViewer));
 }
 
 /// A connection on which the test sends bytes.

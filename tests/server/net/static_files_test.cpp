@@ -56,6 +56,24 @@ TEST_F(StaticFilesTest, LetsHashedFilesBeKeptAndOthersBeAskedFor) {
   EXPECT_EQ(get("/index.html", "\"other\"").status, 200);
 }
 
+TEST_F(StaticFilesTest, AViewersPageSaysSo) {
+  const auto as_viewer = [&](const std::string& target, const std::string& etag = "") {
+    HttpRequest request{"GET", target, {}, ""};
+    request.access = Access::kViewer;
+    if (!etag.empty()) request.headers["if-none-match"] = etag;
+    return StaticFiles(root()).serve(request);
+  };
+  EXPECT_EQ(as_viewer("/").body, "<html data-access=\"viewer\">");
+  EXPECT_EQ(as_viewer("/runs/abc").body, "<html data-access=\"viewer\">");
+  EXPECT_EQ(as_viewer("/assets/main-1a2b.js").body, "code");
+  // Nobody keeps the other one's page.
+  const std::string ours = header(get("/"), "ETag");
+  const std::string theirs = header(as_viewer("/"), "ETag");
+  EXPECT_EQ(as_viewer("/", ours).status, 200);
+  EXPECT_EQ(get("/", theirs).status, 200);
+  EXPECT_EQ(as_viewer("/", theirs).status, 304);
+}
+
 /// RFC 9110, 8.6.
 TEST_F(StaticFilesTest, AnswersWithoutBodyHaveNoLength) {
   namespace http = boost::beast::http;

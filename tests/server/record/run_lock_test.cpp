@@ -12,6 +12,19 @@
 namespace overfly::server {
 namespace {
 
+TEST(RunLock, OfARenamedFolderLeavesTheLockOfItsSuccessor) {
+  const overfly::testing::TemporaryFolder folder;
+  const std::filesystem::path place = folder.path() / "night";
+  std::filesystem::create_directory(place);
+  auto first = std::make_optional(RunLock::take(place).value());
+  std::filesystem::rename(place, folder.path() / "aside");
+  std::filesystem::create_directory(place);
+  const auto second = RunLock::take(place);
+  ASSERT_TRUE(second.ok());
+  first.reset();
+  EXPECT_TRUE(RunLock::held(place));
+}
+
 TEST(RunLock, OneAtATime) {
   const overfly::testing::TemporaryFolder folder;
   EXPECT_FALSE(RunLock::held(folder.path()));

@@ -67,8 +67,11 @@ HttpResponse continue_study(StudyService& studies, const std::string& name) {
   return status ? study_response(studies, name, 202) : study_refused(refusal, status.error());
 }
 
-HttpResponse delete_study(StudyService& studies, const std::string& name) {
+HttpResponse delete_study(StudyService& studies,
+                          server::ViewService& views,
+                          const std::string& name) {
   if (const Status status = studies.remove(name); !status) return error_response(status.error());
+  views.drop_deleted();
   HttpResponse gone;
   gone.status = 204;
   return gone;
@@ -123,7 +126,12 @@ void add_study_routes(RestRouter* router, const StudyRoutes& routes) {
   router->add("GET", "/api/v1/studies/{name}/page", on_study(routes, study_page));
   router->add("GET", "/api/v1/studies/{name}/worst", on_study(routes, study_worst));
   router->add("POST", "/api/v1/studies/{name}/continue", on_study(routes, continue_study));
-  router->add("DELETE", "/api/v1/studies/{name}", on_study(routes, delete_study));
+  router->add(
+      "DELETE",
+      "/api/v1/studies/{name}",
+      on_study(routes, [views = routes.views](StudyService& service, const std::string& name) {
+        return delete_study(service, *views, name);
+      }));
   router->add(
       "POST",
       "/api/v1/studies/{name}/cancel",

@@ -8,8 +8,8 @@
 #include "server/experiments/service/sweep_files.hpp"
 #include "server/net/http/error_response.hpp"
 #include "server/net/http/json_text.hpp"
+#include "server/net/http/rest_slots.hpp"
 #include "server/net/rest/rest_api.hpp"
-#include "server/net/rest/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -190,7 +190,7 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
                 respond(json_or_error(sweeps->document(call.path.at("name"))));
               });
   const auto checks = std::make_shared<std::atomic<int>>(0);
-  router->add_calculation(
+  router->add_long_calculation(
       "/api/v1/sweep-check",
       [routes, sweeps, checks](const RouteCall& call, const Respond& respond) {
         const auto taken = take_slot(checks, kMostChecks);
@@ -230,17 +230,19 @@ void add_sweep_start_routes(RestRouter* router, const SweepRoutes& routes) {
   router->add("DELETE",
               "/api/v1/sweeps/{name}",
               [routes, sweeps](const RouteCall& call, const Respond& respond) {
-                respond_from_reader(
-                    routes.readers,
-                    "a sweep",
-                    call,
-                    respond,
-                    [sweeps, name = call.path.at("name")](Cancel) -> Result<HttpResponse> {
-                      if (const Status gone = sweeps->remove(name); !gone) return gone.error();
-                      HttpResponse response;
-                      response.status = 204;
-                      return response;
-                    });
+                respond_from_reader(routes.readers,
+                                    "a sweep",
+                                    call,
+                                    respond,
+                                    [sweeps, views = routes.views, name = call.path.at("name")](
+                                        Cancel) -> Result<HttpResponse> {
+                                      if (const Status gone = sweeps->remove(name); !gone)
+                                        return gone.error();
+                                      views->drop_deleted();
+                                      HttpResponse response;
+                                      response.status = 204;
+                                      return response;
+                                    });
               });
   router->add(
       "POST",

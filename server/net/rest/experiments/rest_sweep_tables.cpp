@@ -233,7 +233,7 @@ void add_sweep_table_routes(RestRouter* router, const SweepRoutes& routes) {
                         Cancel cancel) { return tables_of(routes, name, query, cancel); });
               },
               {"format", "published", "as", "margin_percent"});
-  router->add_calculation(
+  router->add_long_calculation(
       "/api/v1/sweeps/{name}/comparison", [routes](const RouteCall& call, const Respond& respond) {
         if (auto refused = not_json(call.request)) return respond(std::move(*refused));
         auto body = comparison_body(call.request.body);

@@ -91,6 +91,10 @@ TEST(CompareSweeps, TheAreaUnderTheCurveJudgesLostFlightsToo) {
                                      {150, 1.0, Outcome::kCompleted, true, 0.6}});
   EXPECT_THAT(pairs.flights.at("position_auc"), UnorderedElementsAre(0.3, 0.9, 0.0));
   EXPECT_THAT(pairs.baseline.at("position_auc"), UnorderedElementsAre(0.8, 0.7, 0.6));
+  // Nor does one that tracked for a moment, without an alignment, score better than none.
+  const PairedSweeps moment =
+      paired({{50, std::nullopt, lost, true, 0.5}}, {{50, 1.0, Outcome::kCompleted, true, 0.8}});
+  EXPECT_THAT(moment.flights.at("position_auc"), UnorderedElementsAre(0.0));
   // A flight without it says nothing, also if it did not initialise.
   const PairedSweeps old = paired({{50, std::nullopt, none}, {100, 1.0}},
                                   {{50, 1.0, Outcome::kCompleted, true, 0.8}, {100, 1.0}});

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/net/http/error_response.hpp"
-#include "server/net/rest/rest_slots.hpp"
+#include "server/net/http/rest_slots.hpp"
 
 namespace overfly::net {
 namespace {
@@ -66,6 +66,25 @@ TEST(RestRouter, KnowsWhichRequestsChangeSomething) {
   EXPECT_FALSE(changes("HEAD", "/runs/a"));
   EXPECT_FALSE(changes("POST", "/check/a"));
   EXPECT_FALSE(changes("POST", "/runs/a")) << "there is none";
+}
+
+TEST(RestRouter, AnswersOneLongCalculationOfViewersAtATime) {
+  RestRouter router;
+  std::vector<Respond> waiting;
+  router.add_long_calculation(
+      "/score", [&](const RouteCall&, const Respond& respond) { waiting.push_back(respond); });
+  const auto status_of = [&](Access access) {
+    int status = 0;
+    HttpRequest request{"POST", "/score", {}, ""};
+    request.access = access;
+    router.handle(request, [&](const HttpResponse& response) { status = response.status; });
+    return status;
+  };
+  EXPECT_EQ(status_of(Access::kViewer), 0);
+  EXPECT_EQ(status_of(Access::kViewer), 503);
+  EXPECT_EQ(status_of(Access::kOperator), 0);
+  EXPECT_EQ(status_of(Access::kOperator), 0);
+  EXPECT_EQ(waiting.size(), 3U);
 }
 
 TEST(RestRouter, TellsUnknownPathsFromWrongMethods) {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/experiments/service/sweep_service.hpp"
 #include "server/record/run_lock.hpp"
 
 namespace overfly::testing {
@@ -63,6 +64,22 @@ TEST_F(SweepRoutesTest, DeletesASweepWithItsFlights) {
   (void)ended("seeds");
 }
 
+TEST_F(SweepRoutesTest, LeavesNoFilesOfADeletedSweep) {
+  const fs::path folder = server_->folder() / "sweeps";
+  const auto entries = [&] { return std::distance(fs::directory_iterator(folder), {}); };
+  ASSERT_EQ(start("seeds").status, 201);
+  (void)ended("seeds");
+  ASSERT_EQ(ask(server_->port(), "DELETE", std::string(kSweepRoute) + "/seeds").status, 204);
+  for (int i = 0; i < 1000 && entries() > 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(entries(), 0);
+  // What a server that was killed has left, the next one deletes.
+  fs::create_directories(folder / ".deleted-night-1/runs/a");
+  const server::experiments::SweepService next(server_->runs(), {});
+  EXPECT_EQ(entries(), 0);
+}
+
 TEST_F(SweepRoutesTest, DeletesNothingElse) {
   const fs::path folder = server_->folder() / "sweeps";
   for (const char* name : {"notes", ".frame_cache"}) fs::create_directories(folder / name);
@@ -81,6 +98,9 @@ TEST_F(SweepRoutesTest, DeletesNothingElse) {
   EXPECT_EQ(ask(server_->port(), "DELETE", std::string(kSweepRoute) + "/seeds").status, 409)
       << "another process works on it";
   EXPECT_TRUE(fs::exists(folder / "seeds/sweep.json"));
+  fs::create_directory_symlink(folder / "seeds", folder / "linked");
+  EXPECT_EQ(ask(server_->port(), "DELETE", std::string(kSweepRoute) + "/linked").status, 409)
+      << "the same through a link";
 }
 
 TEST_F(SweepRoutesTest, ConfinesTheProcessesOfItsFlights) {
