@@ -210,7 +210,7 @@ TEST_F(CalibrationDeskTest, ASessionThatWasLeftAloneGivesWay) {
   const std::string first = desk.begin(request(SourceKind::kUpload, "")).value();
   const std::string second = desk.begin(request(SourceKind::kUpload, "")).value();
   std::this_thread::sleep_for(100ms);
-  ASSERT_TRUE(desk.session(second));  // somebody looks at it
+  ASSERT_TRUE(desk.session(second));        // somebody looks at it
   ASSERT_TRUE(desk.session(first, false));  // and a viewer at this one
   const auto third = desk.begin(request(SourceKind::kUpload, ""));
   ASSERT_TRUE(third) << third.error().message;
