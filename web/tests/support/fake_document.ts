@@ -9,6 +9,7 @@ export class FakeElement {
   readonly dataset: Record<string, string> = {};
   readonly classList = { toggle: () => undefined, add: () => undefined };
   readonly attributes = new Map<string, string>();
+  private readonly listeners = new Map<string, (event: unknown) => void>();
 
   constructor(readonly tag: string) {}
 
@@ -35,8 +36,23 @@ export class FakeElement {
   contains(): boolean {
     return false;
   }
-  addEventListener(): void {
-    // Nothing happens here.
+  addEventListener(type: string, listener: (event: unknown) => void): void {
+    this.listeners.set(type, listener);
+  }
+  click(): void {
+    this.listeners.get('click')?.({});
+  }
+  /** All elements within it. */
+  get within(): FakeElement[] {
+    return this.children.flatMap((child) =>
+      typeof child === 'string' ? [] : [child, ...child.within],
+    );
+  }
+  /** The element within it that has this role. */
+  byRole(role: string): FakeElement {
+    const found = this.within.find(({ attributes }) => attributes.get('data-role') === role);
+    if (found === undefined) throw new Error(`no element is a ${role}`);
+    return found;
   }
   /** Texts of all elements of a tag. */
   textsOf(tag: string): string[] {

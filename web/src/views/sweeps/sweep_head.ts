@@ -16,13 +16,19 @@ const kRunStatus: Record<SweepPhase, string> = {
   complete: 'completed',
 };
 
+/** What is asked twice. */
+interface Question {
+  sweep: string;
+  action: 'cancel' | 'delete';
+}
+
 export class SweepHead {
   readonly root: HTMLElement;
   private readonly title = h('div', { class: 'sweep-title' });
   private readonly buttons = h('div', { class: 'sweep-buttons', 'data-changes': true });
   private readonly progress = h('div', { class: 'sweep-progress', 'data-role': 'sweep-progress' });
-  /** The sweep whose cancelling or deletion awaits confirmation. */
-  private confirming: string | null = null;
+  /** Awaits the second click, which is no answer to another question in the same place. */
+  private confirming: Question | null = null;
   private shown: SweepState | null = null;
   private all: readonly SweepEntry[] = [];
 
@@ -62,14 +68,14 @@ export class SweepHead {
   }
 
   private drawButtons({ sweep, table }: SweepState): void {
-    const asked = this.confirming === sweep.name;
+    const asked = this.confirming?.sweep === sweep.name ? this.confirming.action : null;
     const other = this.all.find(({ here, name }) => here !== null && name !== sweep.name);
     const unfinished = sweep.progress === null || sweep.progress.passed < sweep.progress.most;
     const failed = table?.failed ?? 0;
     const passed = sweep.progress?.passed ?? null;
     const key = [sweep.name, sweep.flying, sweep.here, asked, other?.name ?? null, passed];
     rebuild(this.buttons, JSON.stringify([key, unfinished, failed]), () => {
-      if (sweep.here !== null) return [this.cancelButton(sweep, asked)];
+      if (sweep.here !== null) return [this.cancelButton(sweep, asked === 'cancel')];
       if (sweep.flying) return [];
       const hint =
         other === undefined ? null : `${other.name} is flying: one sweep flies at a time`;
@@ -87,7 +93,7 @@ export class SweepHead {
           },
           'Extend',
         ),
-        this.deleteButton(sweep, asked),
+        this.deleteButton(sweep, asked === 'delete'),
       ];
     });
   }
@@ -106,7 +112,7 @@ export class SweepHead {
           : 'End the flights in progress; results stay, and the sweep can be continued',
         onclick: () => {
           if (asked) void this.context.sweeps.cancel(name);
-          this.ask(asked ? null : name);
+          this.ask(asked ? null : { sweep: name, action: 'cancel' });
         },
       },
       cancelling ? 'Cancelling' : asked ? 'Cancel the sweep?' : 'Cancel',
@@ -137,7 +143,10 @@ export class SweepHead {
   }
 
   private deleteButton({ name, progress }: SweepEntry, asked: boolean): HTMLElement {
-    const flights = progress === null ? 'its flights' : `its ${progress.passed} flights`;
+    const flights =
+      progress === null
+        ? 'its flights'
+        : `its ${progress.passed} ${progress.passed === 1 ? 'flight' : 'flights'}`;
     return h(
       'button',
       {
@@ -149,19 +158,19 @@ export class SweepHead {
           : `Delete the sweep and ${flights}`,
         onclick: () => {
           if (asked) void this.context.sweeps.remove(name);
-          this.ask(asked ? null : name);
+          this.ask(asked ? null : { sweep: name, action: 'delete' });
         },
       },
       asked ? 'Delete the sweep?' : 'Delete',
     );
   }
 
-  private ask(name: string | null): void {
-    this.confirming = name;
+  private ask(question: Question | null): void {
+    this.confirming = question;
     if (this.shown !== null) this.drawButtons(this.shown);
-    if (name === null) return;
+    if (question === null) return;
     window.setTimeout(() => {
-      if (this.confirming === name) this.ask(null);
+      if (this.confirming === question) this.ask(null);
     }, kConfirm_ms);
   }
 

@@ -1,6 +1,9 @@
-import { expect, it } from 'vitest';
-import type { SweepState } from '../../../src/protocol/sweep_types';
-import { progressTexts } from '../../../src/views/sweeps/sweep_head';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import type { SweepEntry, SweepState } from '../../../src/protocol/sweep_types';
+import { progressTexts, SweepHead } from '../../../src/views/sweeps/sweep_head';
+import type { Context } from '../../../src/views/view';
+import type { FakeElement } from '../../support/fake_document';
+import { stubDocument } from '../../support/fake_document';
 
 const begun: SweepState = {
   sweep: {
@@ -29,4 +32,74 @@ it('has a last result only once there is one', () => {
   expect(texts[0]).toBe('1 of 4 flights');
   expect(texts).toContain('1 flights failed');
   expect(texts.at(-1)).toMatch(/^last result 2026-01-0/);
+});
+
+describe('what is asked twice', () => {
+  /** What the head has asked the server for. */
+  let done: string[];
+  let timers: (() => void)[];
+  let head: SweepHead;
+
+  beforeEach(() => {
+    stubDocument();
+    timers = [];
+    vi.stubGlobal('window', { setTimeout: (callback: () => void) => timers.push(callback) });
+    done = [];
+    head = new SweepHead({
+      sweeps: {
+        cancel: (name: string) => done.push(`cancel ${name}`),
+        remove: (name: string) => done.push(`remove ${name}`),
+      },
+    } as unknown as Context);
+  });
+  afterEach(() => vi.unstubAllGlobals());
+
+  function draw(change: Partial<SweepEntry> = {}): void {
+    const sweep = { ...begun.sweep, ...change };
+    head.draw({ ...begun, sweep }, [sweep]);
+  }
+  const button = (role: string) => (head.root as unknown as FakeElement).byRole(role);
+  const ended = { flying: false, here: null };
+
+  it('is the cancelling of a sweep', () => {
+    draw();
+    button('cancel-sweep').click();
+    expect(button('cancel-sweep').textContent).toBe('Cancel the sweep?');
+    draw();
+    button('cancel-sweep').click();
+    expect(done).toEqual(['cancel s']);
+    expect(button('cancel-sweep').textContent).toBe('Cancel');
+  });
+
+  it('is the deletion of a sweep, for some seconds', () => {
+    draw(ended);
+    button('delete-sweep').click();
+    for (const callback of timers.splice(0)) callback();
+    button('delete-sweep').click();
+    expect(done).toEqual([]);
+    button('delete-sweep').click();
+    expect(done).toEqual(['remove s']);
+  });
+
+  it('is not answered by a click on what has come in its place', () => {
+    draw();
+    button('cancel-sweep').click();
+    draw(ended);
+    expect(button('delete-sweep').textContent).toBe('Delete');
+    button('delete-sweep').click();
+    expect(done).toEqual([]);
+    // The time of the question before does not end this one.
+    timers.shift()?.();
+    expect(button('delete-sweep').textContent).toBe('Delete the sweep?');
+  });
+
+  it('names the flights that are lost', () => {
+    const title = (passed: number) => {
+      const rest = { most: 4, flown: passed, failed: 0, spent_s: 1, left_s: null };
+      draw({ ...ended, progress: { passed, ...rest } });
+      return button('delete-sweep').attributes.get('title');
+    };
+    expect(title(1)).toBe('Delete the sweep and its 1 flight');
+    expect(title(2)).toBe('Delete the sweep and its 2 flights');
+  });
 });
