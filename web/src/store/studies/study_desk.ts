@@ -18,8 +18,8 @@ const kPollIdle_ms = 15000;
 
 export class StudyDesk {
   readonly form: StudyForm;
-  /** Of the last opening: an older chain of polls ends. */
-  private opening = 0;
+  /** Of the last chain of polls: an older one ends. */
+  private chain = 0;
   /** Studies that this viewer cancelled. */
   private readonly cancelled = new Set<string>();
 
@@ -37,8 +37,7 @@ export class StudyDesk {
   async open(): Promise<void> {
     this.store.state.openPage(this.page);
     this.changed();
-    this.opening += 1;
-    await this.poll(this.opening);
+    await this.readAgain();
   }
 
   /** Opens the page at a study. @param name  '' = at the newest */
@@ -125,7 +124,7 @@ export class StudyDesk {
     } catch (error) {
       this.notices.error(errorText(error));
     }
-    await this.open();
+    await this.readAgain();
   }
 
   private forget(name: string | null): void {
@@ -134,7 +133,13 @@ export class StudyDesk {
     this.changed();
   }
 
-  private async poll(opening: number): Promise<void> {
+  /** At once, and then as usual: a page that was closed meanwhile stays closed. */
+  private async readAgain(): Promise<void> {
+    this.chain += 1;
+    await this.poll(this.chain);
+  }
+
+  private async poll(chain: number): Promise<void> {
     const { page } = this;
     try {
       const before = page.studies ?? [];
@@ -150,12 +155,12 @@ export class StudyDesk {
       page.error = errorText(error);
     }
     if (page.open) await this.readShown();
-    if (opening !== this.opening) return;
+    if (chain !== this.chain) return;
     const made = page.studies?.some(isOpen) === true;
     if (!page.open && !made) return;
     this.later(
       () => {
-        if (opening === this.opening) void this.poll(opening);
+        if (chain === this.chain) void this.poll(chain);
       },
       made ? kPollMade_ms : kPollIdle_ms,
     );
@@ -182,7 +187,7 @@ export class StudyDesk {
   /** A study that was just started. */
   private async show(name: string): Promise<void> {
     this.forget(name);
-    await this.open();
+    await this.readAgain();
   }
 
   /** Says which studies ended; those that the viewer cancelled are not announced. */

@@ -17,8 +17,8 @@ const kPollIdle_ms = 15000;
 export class SweepDesk {
   readonly form: SweepForm;
   readonly results: SweepResults;
-  /** Of the last opening: an older chain of polls ends. */
-  private opening = 0;
+  /** Of the last chain of polls: an older one ends. */
+  private chain = 0;
   /** Sweeps that this viewer cancelled. */
   private readonly cancelled = new Set<string>();
 
@@ -36,8 +36,7 @@ export class SweepDesk {
   async open(): Promise<void> {
     this.store.state.openPage(this.page);
     this.changed();
-    this.opening += 1;
-    await this.poll(this.opening);
+    await this.readAgain();
   }
 
   close(): void {
@@ -59,7 +58,7 @@ export class SweepDesk {
     } catch (error) {
       this.notices.error(errorText(error));
     }
-    await this.open();
+    await this.readAgain();
   }
 
   /** Flies what a sweep lacks; a border that was not found is sought on. */
@@ -86,7 +85,7 @@ export class SweepDesk {
     } catch (error) {
       this.notices.error(errorText(error));
     }
-    await this.open();
+    await this.readAgain();
   }
 
   /** Shows a flight of the sweep in the dashboard. */
@@ -144,7 +143,13 @@ export class SweepDesk {
     });
   }
 
-  private async poll(opening: number): Promise<void> {
+  /** At once, and then as usual: a page that was closed meanwhile stays closed. */
+  private async readAgain(): Promise<void> {
+    this.chain += 1;
+    await this.poll(this.chain);
+  }
+
+  private async poll(chain: number): Promise<void> {
     const { page } = this;
     try {
       const before = page.sweeps ?? [];
@@ -158,12 +163,12 @@ export class SweepDesk {
       page.error = errorText(error);
     }
     if (page.open) await this.readShown();
-    if (opening !== this.opening) return;
+    if (chain !== this.chain) return;
     const flying = page.sweeps?.some((sweep) => sweep.flying) === true;
     if (!page.open && !flying) return;
     this.later(
       () => {
-        if (opening === this.opening) void this.poll(opening);
+        if (chain === this.chain) void this.poll(chain);
       },
       flying ? kPollFlying_ms : kPollIdle_ms,
     );
@@ -191,7 +196,7 @@ export class SweepDesk {
   private async show(name: string): Promise<void> {
     this.cancelled.delete(name);
     if (this.page.name !== name) this.forget(name);
-    await this.open();
+    await this.readAgain();
   }
 
   /** Says which sweeps ended; those that the viewer cancelled are not announced. */

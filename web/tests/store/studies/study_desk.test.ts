@@ -110,6 +110,21 @@ describe('StudyDesk', () => {
     expect(store.state.studyPage.name).toBe('b');
   });
 
+  it('does not open its page again when it was closed meanwhile', async () => {
+    for (const act of [() => desk.cancel('b'), () => desk.continue('a'), () => desk.remove('a')]) {
+      await desk.open();
+      asked = [];
+      waiting = [];
+      const acting = act();
+      desk.close();
+      await acting;
+      expect(store.state.studyPage.open).toBe(false);
+      // The list of a closed page, and again while a study is made.
+      expect(asked.slice(1)).toEqual(['api/studies']);
+      expect(waiting).toHaveLength(1);
+    }
+  });
+
   it('opens at the study of an address', async () => {
     await desk.openAt('a');
     expect(store.state.studyPage.open).toBe(true);

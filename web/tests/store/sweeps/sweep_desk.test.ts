@@ -130,6 +130,34 @@ describe('SweepDesk', () => {
     expect(notices.error).not.toHaveBeenCalled();
   });
 
+  it('does not open its page again when it was closed meanwhile', async () => {
+    const begin = () => {
+      const empty = { changes: null, files: null, file: null, loaded: 0, jobs: 1, cost: null };
+      const border = { axis: '', estimator: '' };
+      const idle = { checking: false, starting: false, errors: [] };
+      store.state.sweepPage.form = { ...empty, ...idle, border, name: 'b', text: '{}' };
+      return desk.form.start();
+    };
+    for (const act of [
+      () => desk.cancel('b'),
+      () => desk.continue('a'),
+      () => desk.remove('a'),
+      begin,
+    ]) {
+      await desk.open();
+      asked = [];
+      waiting = [];
+      const acting = act();
+      desk.close();
+      await acting;
+      expect(store.state.sweepPage.open).toBe(false);
+      // The list of a closed page, and again while a sweep flies.
+      expect(asked.slice(1)).toEqual(['api/sweeps']);
+      expect(waiting).toHaveLength(1);
+    }
+    expect(notices.error).not.toHaveBeenCalled();
+  });
+
   it('continues a sweep and shows it', async () => {
     await desk.open();
     await desk.continue('a');
