@@ -54,17 +54,21 @@ export interface CauseRow {
   margin: string;
 }
 
-/** Each cause that a flight says something about: the named ones first. */
+/**
+ * Each cause that a flight says something about, the named ones first: as findings_of() of the server
+ * (cause_finding.cpp).
+ */
 export function causeRows(explanation: Explanation): CauseRow[] {
   const { necessary, sufficient, together, pair, margin, words, flights } = explanation;
   const tested = explanation.sufficiency_tested ?? [];
-  const named = [...new Set([...necessary, ...sufficient, ...together, ...pair])];
   const changed = flights.filter(({ changes, error }) => error === null && changes.length === 1);
+  const named = [...necessary, ...sufficient, ...together, ...pair, ...tested];
   const causes = [...new Set([...named, ...changed.flatMap(causesOf)])];
   const failed = changed.filter(({ survived }) => survived === false).flatMap(causesOf);
+  const unnecessary = [...failed, ...(explanation.withdrawn ?? [])];
   return causes.map((cause) => ({
     words: plainWords(words[cause] ?? cause),
-    necessary: necessary.includes(cause) ? 'yes' : failed.includes(cause) ? 'no' : '',
+    necessary: necessary.includes(cause) ? 'yes' : unnecessary.includes(cause) ? 'no' : '',
     sufficient: sufficient.includes(cause) ? 'yes' : tested.includes(cause) ? 'no' : '',
     margin: margin?.cause === cause ? marginText(margin) : '',
   }));

@@ -64,6 +64,22 @@ describe('study words', () => {
     expect(sufficient({ ...found, sufficiency_tested: ['blur', 'noise'] })).toEqual(['no', 'yes']);
   });
 
+  it('has a row of each cause that was tested, in the order of the server', () => {
+    const without = (cause: string) => reflight({ survived: true, changes: [{ cause, share: 0 }] });
+    const found = explanation({
+      necessary: ['n'],
+      sufficient: ['s'],
+      together: ['t'],
+      pair: ['p', 't'],
+      sufficiency_tested: ['s', 'tested'],
+      withdrawn: ['single'],
+      flights: [without('n'), without('single')],
+    });
+    expect(
+      causeRows(found).map((row) => [row.words, row.necessary, row.sufficient].join(' ').trim()),
+    ).toEqual(['N yes', 'S  yes', 'T', 'P', 'Tested  no', 'Single no']);
+  });
+
   it('draws a flight from its start to the failure', () => {
     expect(bandsOf(reflight())).toEqual({ initialised_s: 3, lost_s: 8 });
     expect(bandsOf(reflight({ survived: true }))).toEqual({ initialised_s: 3, lost_s: 12 });
