@@ -5,7 +5,14 @@ import type { JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
 import { SilentRuns } from './runs/silent_runs';
-import { draftOf, kChangedMeanwhile, overridesBetween, sameJson } from './scenario/draft';
+import type { ShownScenario } from './scenario/draft';
+import {
+  draftOf,
+  kChangedMeanwhile,
+  kChosenMeanwhile,
+  overridesBetween,
+  sameJson,
+} from './scenario/draft';
 import { KeptEdits } from './scenario/kept_edits';
 import { documentErrors } from './scenario/schema_check';
 import type { Session } from './session';
@@ -175,17 +182,19 @@ export class Catalogue {
   }
 
   /**
-   * Whether the server still has the scenario that the launcher shows: somebody else may have saved
-   * it. If not, the launcher shows the new one, or that it is not that of the changes.
+   * Looks whether the server still has the scenario that the launcher shows: somebody else may have
+   * saved it. If so, the launcher shows the new one, or that it is not that of the changes.
    */
-  async isAsShown(): Promise<boolean> {
+  async lookAgain(): Promise<ShownScenario> {
     const { state } = this.store;
-    const shown = state.scenarioDocument;
-    if (state.scenarioName !== null) await this.readAgain(state.scenarioName);
-    if (state.scenarioChanged) return false;
-    if (state.scenarioDocument === shown) return true;
+    const { choice } = this;
+    const { scenarioDocument: shown, scenarioName: name } = state;
+    if (name !== null) await this.readAgain(name);
+    if (this.choice !== choice || state.scenarioName !== name) return 'left';
+    if (state.scenarioChanged) return 'changed';
+    if (state.scenarioDocument === shown) return 'same';
     this.notices.error('The scenario was changed on the server: Launch shows the new one.');
-    return false;
+    return 'changed';
   }
 
   /** Starts a run of the changed scenario and watches it. @return whether it was started */
@@ -200,7 +209,9 @@ export class Catalogue {
     this.store.change('launch');
     let started = false;
     try {
-      if (await this.isAsShown()) {
+      const found = await this.lookAgain();
+      if (found === 'left') this.notices.error(`Nothing was flown: ${kChosenMeanwhile}`);
+      if (found === 'same') {
         const run = await this.fly(document);
         state.runs = [run, ...(state.runs ?? []).filter(({ id }) => id !== run.id)];
         this.session.selectRun(run.id);

@@ -77,6 +77,30 @@ describe('Catalogue with a slow server', () => {
     expect(store.state.scenarioDocument).toEqual(kFlown);
   });
 
+  it('flies nothing, and says so, when another choice is made after the click', async () => {
+    const launch = async (choose: () => void) => {
+      store.state.notices = [];
+      await give('/scenarios/course', kCourse);
+      answer.clear();
+      const launched = catalogue.launch();
+      choose();
+      await give('/scenarios/course', kCourse);
+      await give('/scenarios/hover', { seed: 2 });
+      await give('/runs/r1/scenario', kFlown);
+      expect(await launched).toBe(false);
+      expect(answer.has('/runs')).toBe(false);
+      expect(store.state.launching).toBe(false);
+      return store.state.notices.map(({ text }) => text);
+    };
+    const said = ['Nothing was flown: another choice was made in Launch meanwhile.'];
+    void catalogue.selectScenario('course');
+    expect(await launch(() => void catalogue.selectScenario('hover'))).toEqual(said);
+    expect(store.state.scenarioDocument).toEqual({ seed: 2 });
+    void catalogue.selectScenario('course');
+    expect(await launch(() => void catalogue.repeat(kRun))).toEqual(said);
+    expect(store.state.scenarioDocument).toEqual(kFlown);
+  });
+
   it('takes the scenario if the run cannot be flown again', async () => {
     void catalogue.selectScenario('course');
     void catalogue.repeat(kRun);

@@ -62,6 +62,9 @@ describe('Catalogue', () => {
     saved = { ...document, seed: 2 };
     expect(await subject.launch()).toBe(false);
     expect(store.state.scenarioDocument).toEqual(saved);
+    expect(store.state.notices.map(({ text }) => text)).toEqual([
+      'The scenario was changed on the server: Launch shows the new one.',
+    ]);
     store.state.scenarioEdits = new Map([['pacing', '"real_time"']]);
     saved = { ...document, seed: 3 };
     expect(await subject.launch()).toBe(false);

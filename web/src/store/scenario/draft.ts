@@ -13,6 +13,15 @@ export const kChangedMeanwhile: FieldError = {
     'The scenario was changed on the server meanwhile. Take your changes back, or save them under another name.',
 };
 
+/** What was to be done with the scenario that was shown before is not done. */
+export const kChosenMeanwhile = 'another choice was made in Launch meanwhile.';
+
+/**
+ * What has become of the shown scenario: `changed` on the server by somebody else, or `left` here for
+ * another one.
+ */
+export type ShownScenario = 'same' | 'changed' | 'left';
+
 /** The changed document; sections that are not JSON stay as they were, and are errors. */
 export function draftOf(
   base: JsonObject,

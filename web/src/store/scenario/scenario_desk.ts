@@ -8,8 +8,16 @@ import type { FieldSpec } from '../launch_form';
 import { withFieldText } from '../launch_form';
 import type { Notices } from '../notices';
 import type { Store } from '../state';
-import { draftOf, editsWith, editsWithText, kChangedMeanwhile, valueIn, withValue } from './draft';
-import type { Edits } from './draft';
+import {
+  draftOf,
+  editsWith,
+  editsWithText,
+  kChangedMeanwhile,
+  kChosenMeanwhile,
+  valueIn,
+  withValue,
+} from './draft';
+import type { Edits, ShownScenario } from './draft';
 import { newEstimator, withEstimatorTypes, withType } from './estimator_schema';
 import type { ScenarioEditorState } from './scenario_editor';
 import { documentErrors } from './schema_check';
@@ -28,8 +36,8 @@ type Rest = Pick<
 interface Scenarios {
   readScenarios(): Promise<void>;
   selectScenario(name: string): Promise<void>;
-  /** Whether the server still has the scenario that is shown. */
-  isAsShown(): Promise<boolean>;
+  /** Looks whether the server still has the scenario that is shown. */
+  lookAgain(): Promise<ShownScenario>;
 }
 
 export class ScenarioDesk {
@@ -216,8 +224,10 @@ export class ScenarioDesk {
     this.changed();
     try {
       const isOwn = name === this.store.state.scenarioName && this.store.state.repeatedRun === null;
-      if (replace && isOwn && !(await this.scenarios.isAsShown())) {
-        this.refuse(kChangedMeanwhile.message);
+      const found = replace && isOwn ? await this.scenarios.lookAgain() : 'same';
+      if (found !== 'same') {
+        if (found === 'changed') this.refuse(kChangedMeanwhile.message);
+        else this.notices.error(`${name} was not saved: ${kChosenMeanwhile}`);
         editor.saving = false;
         this.changed();
         return;

@@ -110,7 +110,7 @@ beforeEach(() => {
   const list = {
     readScenarios: none,
     selectScenario: none,
-    isAsShown: () => Promise.resolve(true),
+    lookAgain: () => Promise.resolve('same' as const),
   };
   const scenarios = new ScenarioDesk(store, rest, list, notices, (check) => checks.push(check));
   desk = new CalibrationDesk(store, new CalibrationClient(rest), rest, scenarios, notices, wait);

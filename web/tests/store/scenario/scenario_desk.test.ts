@@ -5,6 +5,7 @@ import { RestError } from '../../../src/connection/rest_error';
 import type { FieldError } from '../../../src/protocol/field_errors';
 import type { JsonObject } from '../../../src/protocol/rest_types';
 import { Notices } from '../../../src/store/notices';
+import type { ShownScenario } from '../../../src/store/scenario/draft';
 import { kChangedMeanwhile } from '../../../src/store/scenario/draft';
 import { ScenarioDesk } from '../../../src/store/scenario/scenario_desk';
 import { Store } from '../../../src/store/state';
@@ -29,7 +30,7 @@ function desk() {
   const saved: [string, JsonObject, boolean][] = [];
   const chosen: string[] = [];
   const readings: (JsonObject | null)[] = [];
-  const elsewhere = { saved: false };
+  const elsewhere: { found: ShownScenario } = { found: 'same' };
   const rest = {
     scenarioSchema: () => Promise.resolve(JSON.parse(schemaText) as JsonObject),
     checkScenario: (document: JsonObject, signal: AbortSignal) =>
@@ -61,7 +62,7 @@ function desk() {
       chosen.push(name);
       return Promise.resolve();
     },
-    isAsShown: () => Promise.resolve(!elsewhere.saved),
+    lookAgain: () => Promise.resolve(elsewhere.found),
   };
   const subject = new ScenarioDesk(store, rest, scenarios, new Notices(store, () => {}), later);
   const pause = async () => {
@@ -201,14 +202,26 @@ describe('saving a scenario', () => {
   it('asks the server whether somebody else has saved it before it is replaced', async () => {
     const { subject, state, saved, elsewhere } = desk();
     state.scenarioName = 'mine';
-    elsewhere.saved = true;
+    elsewhere.found = 'changed';
     await subject.save('mine', true);
     expect(saved).toEqual([]);
     expect(state.scenarioEditor.saving).toBe(false);
     expect(state.scenarioEditor.saveError).toMatch(/changed on the server/);
-    elsewhere.saved = false;
+    elsewhere.found = 'same';
     await subject.save('mine', true);
     expect(saved.map(([name]) => name)).toEqual(['mine']);
+  });
+
+  it('does not replace it once another one is chosen, and says no word of a change', async () => {
+    const { subject, state, saved, elsewhere } = desk();
+    state.scenarioName = 'mine';
+    elsewhere.found = 'left';
+    await subject.save('mine', true);
+    expect(saved).toEqual([]);
+    expect(state.scenarioEditor).toMatchObject({ saving: false, saveError: '' });
+    expect(state.notices.map(({ text }) => text)).toEqual([
+      'mine was not saved: another choice was made in Launch meanwhile.',
+    ]);
   });
 
   it('does not replace one that was changed meanwhile', async () => {
