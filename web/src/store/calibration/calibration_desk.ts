@@ -4,27 +4,27 @@ import { errorText, RestError } from '../../connection/rest_error';
 import type { CalibrationSession } from '../../protocol/calibration_types';
 import type { JsonObject } from '../../protocol/rest_types';
 import type { Notices } from '../notices';
-import { draftOf } from '../scenario/draft';
 import type { Store } from '../state';
 import type { CalibrationForm } from './calibration_form';
 import { camerasOf, lensOf, requestOf } from './calibration_form';
 import type { CalibrationPage } from './calibration_page';
 import { chooseFirst } from './calibration_page';
-import { calibratedSection, leftOutBy, sameViews } from './calibration_results';
+import { leftOutBy, sameViews } from './calibration_results';
+import type { SectionTaker } from './calibration_use';
+import { useInScenario } from './calibration_use';
 import type { Later } from './image_sender';
 import { ImageSender } from './image_sender';
 
 /** While a camera is shown, and otherwise. */
 const kLivePeriod_ms = 150;
 const kQuietPeriod_ms = 600;
+/** While a viewer waits for an operator's session. */
+const kSeekPeriod_ms = 3000;
+
+const kClosed = 'The calibration was closed by the server.';
 
 export interface ScenarioReader {
   scenario(name: string): Promise<JsonObject>;
-}
-
-/** Takes a section of the launcher's scenario as JSON, and has it checked. */
-export interface SectionTaker {
-  setText(section: string, text: string): void;
 }
 
 export class CalibrationDesk {
@@ -190,20 +190,7 @@ export class CalibrationDesk {
    * The scenario of the launcher, with its changes, uses a saved calibration in its next flight.
    */
   useInScenario(file: string, name: string): void {
-    const { scenarioDocument, scenarioEdits, scenarioName } = this.store.state;
-    if (scenarioDocument === null) {
-      this.notices.error('Choose a scenario in the launcher first.');
-      return;
-    }
-    const { document, errors } = draftOf(scenarioDocument, scenarioEdits);
-    const faulty = errors.find(({ field }) => field === 'camera' || field === 'cameras');
-    if (faulty !== undefined) {
-      this.notices.error(`Correct the scenario first: ${faulty.field} ${faulty.message}`);
-      return;
-    }
-    const { section, value } = calibratedSection(document, file);
-    this.sections.setText(section, JSON.stringify(value, null, 2));
-    this.notices.info(`The next flight of ${scenarioName ?? 'the scenario'} uses ${name}.`);
+    useInScenario(this.store.state, this.sections, this.notices, { file, name });
   }
 
   /** A saved calibration for another program; null, with the reason shown, if there is none. */
@@ -223,16 +210,22 @@ export class CalibrationDesk {
 
   /** Goes on with a session that a reloaded page has lost. */
   private async resume(): Promise<void> {
-    const { generation } = this;
-    if (this.page.session === null) {
-      try {
-        const session = (await this.client.sessions()).at(-1);
-        if (session !== undefined && this.generation === generation) this.show(session);
-      } catch {
-        return;
-      }
-    }
+    if (this.page.session === null && this.store.state.mayChange) await this.seek();
     this.poll();
+  }
+
+  /** Shows the newest session of the server. */
+  private async seek(): Promise<void> {
+    const { page, generation } = this;
+    try {
+      const session = (await this.client.sessions()).at(-1);
+      if (this.generation !== generation) return;
+      if (session !== undefined && page.error === kClosed) page.error = null;
+      if (session !== undefined) this.show(session);
+      this.notePolled(null);
+    } catch (error) {
+      if (this.isSeeking) this.notePolled(errorText(error));
+    }
   }
 
   private async readCameras(): Promise<void> {
@@ -278,24 +271,30 @@ export class CalibrationDesk {
     }
   }
 
+  /** Follows the session; where there is none, a viewer's page looks for one. */
   private poll(): void {
     if (this.polling) return;
     this.polling = true;
     const turn = async () => {
       const { page } = this;
-      if (!page.open || page.session === null) {
+      if (!page.open || (page.session === null && !this.isSeeking)) {
         this.polling = false;
         return;
       }
-      await this.ask();
-      this.later(() => void turn(), this.isBusy() ? kLivePeriod_ms : kQuietPeriod_ms);
+      await (this.isSeeking ? this.seek() : this.ask());
+      this.later(() => void turn(), this.period_ms());
     };
     void turn();
   }
 
-  private isBusy(): boolean {
-    const { session } = this.page;
-    return session?.phase === 'taking' || session?.phase === 'solving';
+  private get isSeeking(): boolean {
+    return this.page.session === null && !this.store.state.mayChange;
+  }
+
+  private period_ms(): number {
+    if (this.isSeeking) return kSeekPeriod_ms;
+    const phase = this.page.session?.phase;
+    return phase === 'taking' || phase === 'solving' ? kLivePeriod_ms : kQuietPeriod_ms;
   }
 
   private async ask(): Promise<void> {
@@ -311,7 +310,7 @@ export class CalibrationDesk {
       if (this.generation !== generation) return;
       if (error instanceof RestError && error.status === 404) {
         this.forget();
-        page.error = 'The calibration was closed by the server.';
+        page.error = kClosed;
         this.changed();
       } else {
         this.notePolled(errorText(error));
