@@ -65,6 +65,7 @@ import { TabStorage } from './store/tab_storage';
 import { Themes } from './store/themes';
 import { TrackColours } from './store/track_colours';
 import { VehicleConnect } from './store/vehicle/vehicle_connect';
+import { servedAccess } from './views/access';
 import { followAddress } from './views/address_bar';
 import { applyTheme } from './views/paint';
 import { showScreen } from './views/screen';
@@ -76,7 +77,7 @@ const later = (callback: () => void, delay_ms: number) => window.setTimeout(call
 const newKey = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join('-');
 
-const store = new Store();
+const store = new Store(servedAccess());
 const notices = new Notices(store, later);
 const session = new Session(
   store,

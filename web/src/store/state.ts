@@ -52,7 +52,7 @@ const kNoRates: ReadonlyMap<string, PictureRate> = new Map();
 
 export class State {
   connection: ConnectionState = { status: 'connecting', attempt: 1 };
-  /** As the server said last; it stays while the connection is lost. */
+  /** As the server said last, first by the page itself; it stays while the connection is lost. */
   access: Access = 'operator';
   /** null until read. */
   scenarios: ScenarioEntry[] | null = null;
@@ -270,6 +270,10 @@ export class Store {
   readonly state = new State();
   private changed = new Set<Topic>();
   private listener: (() => void) | null = null;
+
+  constructor(access: Access = 'operator') {
+    this.state.access = access;
+  }
 
   /** Calls back once when something has changed since the last take(). */
   onChange(listener: () => void): void {

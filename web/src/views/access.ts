@@ -24,6 +24,11 @@ export function wordsFor(operator: string, viewer: string): [HTMLElement, HTMLEl
   ];
 }
 
+/** What the server has served the page as, before it says so in `hello`. */
+export function servedAccess(): Access {
+  return document.documentElement.dataset['access'] === 'viewer' ? 'viewer' : 'operator';
+}
+
 /** Shows and hides the parts of the page. */
 export function showAccess(access: Access): void {
   document.documentElement.dataset['access'] = access;

@@ -1,7 +1,19 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import kSheet from '../../src/styles/access.css?raw';
-import { guardChanges, showAccess, viewerNote, wordsFor } from '../../src/views/access';
+import { StreamClient } from '../../src/connection/stream_client';
+import type { Access } from '../../src/protocol/messages';
+import { Notices } from '../../src/store/notices';
+import { Store } from '../../src/store/state';
+import {
+  guardChanges,
+  servedAccess,
+  showAccess,
+  viewerNote,
+  wordsFor,
+} from '../../src/views/access';
 import { FakeElement, stubDocument } from '../support/fake_document';
+import { FakeSocket, FakeTimers } from '../support/fake_socket';
+import { unwatchedSession } from '../support/viewing';
 
 /** An element of the page, or of a part of it. */
 class Place {
@@ -13,6 +25,17 @@ class Place {
 
 afterEach(() => vi.unstubAllGlobals());
 
+/** A page whose stream has not said anything yet. */
+function unheard(access: Access) {
+  const store = new Store(access);
+  const socket = new FakeSocket();
+  const listener = unwatchedSession(store, new Notices(store, () => undefined));
+  const timers = new FakeTimers();
+  const ask = () => undefined;
+  new StreamClient({ open: () => socket, timers, random: () => 0, ask, listener }).connect();
+  return { store, socket };
+}
+
 describe('what viewers and operators see', () => {
   beforeEach(stubDocument);
 
@@ -23,6 +46,30 @@ describe('what viewers and operators see', () => {
     expect(root.dataset['access']).toBe('viewer');
     showAccess('operator');
     expect(root.dataset['access']).toBe('operator');
+  });
+
+  it('is first what the page was served as, also for a viewer whom no stream tells', () => {
+    const root = new FakeElement('html');
+    vi.stubGlobal('document', { documentElement: root });
+    const access = () => new Store(servedAccess()).state.access;
+    expect(access()).toBe('operator');
+    root.dataset['access'] = 'operator';
+    expect(access()).toBe('operator');
+    root.dataset['access'] = 'viewer';
+    const { store, socket } = unheard(servedAccess());
+    expect(store.state.mayChange).toBe(false);
+    socket.lose();
+    expect(store.state.connection.status).toBe('waiting');
+    expect(store.state.mayChange).toBe(false);
+  });
+
+  it('is what the stream says once it is there', () => {
+    const { store, socket } = unheard('viewer');
+    socket.hello(2, 'operator');
+    expect(store.state.access).toBe('operator');
+    socket.hello(2, 'viewer');
+    socket.lose();
+    expect(store.state.access).toBe('viewer');
   });
 
   it('has a note only for viewers, and words for each of them', () => {
