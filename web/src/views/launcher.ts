@@ -12,6 +12,8 @@ import { prepareStudy } from './studies/prepare_study';
 import type { Context, View } from './view';
 
 const kEditLabel = 'Edit scenario';
+const kLogsHint = 'Flight logs: look at them, upload them, fly them';
+const kLogsHintOfViewer = 'Flight logs: look at what they contain';
 /** Value of the option of a run that is flown again: no scenario's name. */
 const kRepeated = '';
 
@@ -44,6 +46,16 @@ export class Launcher implements View {
     'button',
     { class: 'primary', type: 'submit', 'data-changes': true },
     'Launch flight',
+  );
+  private readonly logs = h(
+    'button',
+    {
+      class: 'tab',
+      type: 'button',
+      'data-role': 'open-logs',
+      onclick: () => void this.context.logs.open(),
+    },
+    ...wordsFor('Fly a log', 'Flight logs'),
   );
   private fields: Field[] = [];
   private documentShown: object | null = null;
@@ -82,17 +94,7 @@ export class Launcher implements View {
     this.editor.addEventListener('click', () => void context.scenarios.openEditor());
     panel.body.append(form);
     panel.tools.append(
-      h(
-        'button',
-        {
-          class: 'tab',
-          type: 'button',
-          'data-role': 'open-logs',
-          title: 'Flight logs: look at them, upload them, fly them',
-          onclick: () => void this.context.logs.open(),
-        },
-        ...wordsFor('Fly a log', 'Flight logs'),
-      ),
+      this.logs,
       h(
         'button',
         {
@@ -133,6 +135,7 @@ export class Launcher implements View {
     if (changed.has('lists') || changed.has('launch')) this.updatePicker();
     if (!changed.has('launch') && !changed.has('connection')) return;
     const { state } = this.context.store;
+    setAttribute(this.logs, 'title', state.mayChange ? kLogsHint : kLogsHintOfViewer);
     const { scenarioDocument: base, scenarioEdits } = state;
     if (base !== this.documentShown) this.buildFields();
     if (base !== null) this.fillFields(draftOf(base, scenarioEdits).document);
