@@ -193,6 +193,16 @@ describe('a viewer', { skip, timeout: 600_000 }, () => {
     await dashboard.screenshot('viewer_1280x800');
   });
 
+  step('is told so without a stream too', async () => {
+    const other = await page.context().newPage();
+    await other.routeWebSocket(/\/api\/v1\/stream/, (socket) => socket.close());
+    await other.goto(new URL('/', page.url()).href);
+    await other.locator('[data-role=view-only]').waitFor({ state: 'visible' });
+    await other.locator(kDashboard.note).waitFor();
+    assert.equal(await other.locator('.launch-form [type=submit]').isVisible(), false);
+    await other.close();
+  });
+
   step('plays, seeks, compares and reads as everybody', async () => {
     await page.keyboard.press('Home');
     await dashboard.untilCursor(0);

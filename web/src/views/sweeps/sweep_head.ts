@@ -212,7 +212,9 @@ export function progressTexts({ sweep, table }: SweepState): string[] {
   }
   if (sweep.flying && sweep.here === null) texts.push('flown by another process');
   if (table === null) return [...texts, 'no flight is over yet'];
-  if (table.failed > 0) texts.push(`${table.failed} flights failed`);
+  if (table.failed > 0) {
+    texts.push(table.failed === 1 ? '1 flight failed' : `${table.failed} flights failed`);
+  }
   if (table.unreadable > 0) texts.push(`${table.unreadable} runs unreadable`);
   return [...texts, `last result ${formatDate(sweep.changed_utc)}`];
 }

@@ -30,7 +30,7 @@ it('has a last result only once there is one', () => {
   const table = { conventions: {}, failed: 1, unreadable: 0 } as unknown as SweepState['table'];
   const texts = progressTexts({ ...begun, sweep: { ...sweep, progress }, table });
   expect(texts[0]).toBe('1 of 4 flights');
-  expect(texts).toContain('1 flights failed');
+  expect(texts).toContain('1 flight failed');
   expect(texts.at(-1)).toMatch(/^last result 2026-01-0/);
 });
 
