@@ -44,13 +44,13 @@ describe('a flight with two cameras and faults', { skip, timeout: 600_000 }, () 
     const errors = dashboard.page.locator('.editor-errors');
     await errors.filter({ hasText: 'at_s' }).waitFor();
     await dashboard.screenshot('scenario_editor');
-    await dashboard.page.getByRole('button', { name: 'Done' }).click();
+    await dashboard.closeEditor();
   });
 
   step('flies what was typed', async () => {
     await typeFaults(JSON.stringify(kFaults));
     await dashboard.page.locator('[data-check=done]').waitFor();
-    await dashboard.page.getByRole('button', { name: 'Done' }).click();
+    await dashboard.closeEditor();
     await dashboard.field('duration_s').fill(String(kFlight_s));
     run = await dashboard.launch();
     await dashboard.untilStatus(run, 'completed', kFlightPatience_ms);

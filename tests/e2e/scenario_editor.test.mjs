@@ -117,7 +117,7 @@ describe('the scenario editor', { skip, timeout: 900_000 }, () => {
     await section('general');
     await control('title').fill('A small camera');
     await control('duration_s').fill('3');
-    await role('close-editor').click();
+    await dashboard.closeEditor();
     await dashboard.until(() => document.getElementById('field-duration_s').value === '3');
     assert.ok(await page.locator('[data-estimator=drifting]').isChecked());
     await dashboard.field('flight.course.airspeed_m_s').fill('20');

@@ -64,7 +64,7 @@ describe('the sensors of a flight', { skip, timeout: 600_000 }, () => {
     await dashboard.page.locator('[data-role=as-json]').click();
     await typeSection('sensors', kSensors);
     await typeSection('faults', kFaults);
-    await dashboard.page.getByRole('button', { name: 'Done' }).click();
+    await dashboard.closeEditor();
     await dashboard.field('duration_s').fill(String(kFlight_s));
     await dashboard.page.locator('#field-pacing').selectOption('real_time');
     run = await dashboard.launch();

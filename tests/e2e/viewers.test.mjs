@@ -221,7 +221,7 @@ describe('a viewer', { skip, timeout: 600_000 }, () => {
     await dashboard.field('seed').fill('12');
     await page.locator('[data-role=edit-json]').click();
     await page.locator('[data-check=done]', { hasText: 'no errors' }).waitFor();
-    await page.locator('[data-role=close-editor]').click();
+    await dashboard.closeEditor();
   });
 
   step('opens a mission and has it checked', async () => {

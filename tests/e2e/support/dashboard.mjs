@@ -70,6 +70,12 @@ export class Dashboard {
     }
   }
 
+  /** Closes the scenario's editor. Until it is closed it keeps the keyboard. */
+  async closeEditor() {
+    await this.page.locator('[data-role=close-editor]').click();
+    await this.page.locator('.editor').waitFor({ state: 'hidden' });
+  }
+
   /** Presses the button and waits for the run. @return its id */
   async launch() {
     const before = await this.runId();
