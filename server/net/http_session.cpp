@@ -41,10 +41,6 @@ constexpr std::size_t kDrainBytes = std::size_t{2} << 20U;
 constexpr std::size_t kDrainStepBytes = std::size_t{16} << 10U;
 constexpr std::chrono::seconds kDrainLimit{2};
 
-ConnectionPhase web_socket_phase(const HttpRequest& request) {
-  return request.access == Access::kViewer ? ConnectionPhase::kOnlooker : ConnectionPhase::kViewer;
-}
-
 class HttpSession final : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerContext> context)

@@ -70,6 +70,10 @@ bool is_websocket_target(const std::string& target) {
 
 bool is_foxglove_target(const std::string& target) { return path_of(target) == kFoxglovePath; }
 
+ConnectionPhase web_socket_phase(const HttpRequest& request) {
+  return request.access == Access::kViewer ? ConnectionPhase::kOnlooker : ConnectionPhase::kViewer;
+}
+
 Result<WebSocketService> websocket_service(const http::request<http::string_body>& upgrade,
                                            const HttpRequest& request,
                                            const std::shared_ptr<ServerContext>& context) {

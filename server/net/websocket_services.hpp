@@ -17,6 +17,9 @@ namespace overfly::net {
 /// True if it is that of the Foxglove protocol.
 [[nodiscard]] bool is_foxglove_target(const std::string& target);
 
+/// The kind of connection that a client with this token opens.
+[[nodiscard]] ConnectionPhase web_socket_phase(const HttpRequest& request);
+
 /// The service that an upgrade asks for.
 /// @param request  its header, without the token. @pre is_websocket_target(request.target)
 /// Errors: kInvalidArgument if the client offers no subprotocol that the endpoint speaks, or for an

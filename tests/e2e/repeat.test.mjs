@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { callServer, getJson, serverMissing } from './support/server.mjs';
+import { callServer, getJson, launchCourse, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
@@ -29,26 +29,9 @@ describe('flying again', { skip, timeout: 900_000 }, () => {
   const entry = (id) => page.locator(`.run[data-run="${id}"]`);
   const notice = (text) => page.locator('.notices', { hasText: text });
 
-  const launchByRest = async (overrides) => {
-    const answer = await callServer(stage.server, '/runs', {
-      method: 'POST',
-      headers: { 'content-type': 'application/json' },
-      body: JSON.stringify({
-        scenario: 'course',
-        overrides: {
-          pacing: 'real_time',
-          estimators: [{ name: 'baseline_hold', type: 'baseline_hold' }],
-          ...overrides,
-        },
-      }),
-    });
-    assert.equal(answer.status, 201);
-    return (await answer.json()).id;
-  };
-
   step('shows the place in the queue and the time that is left', async () => {
     // Longer than any page takes to show the list, and cancelled below.
-    occupying = await launchByRest({ duration_s: 600 });
+    occupying = await launchCourse(stage.server, { duration_s: 600 });
     await entry(occupying)
       .filter({ hasText: / · \d+ s left/ })
       .waitFor({ timeout: kPatience_ms });

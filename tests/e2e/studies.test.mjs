@@ -4,7 +4,7 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing } from './support/browser.mjs';
-import { flyCourse } from './support/flights.mjs';
+import { flyCourse, kBlackout } from './support/flights.mjs';
 import { callServer, serverMissing } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
@@ -14,17 +14,6 @@ const kPatience_ms = 300_000;
 let dashboard;
 const step = makeStep(() => dashboard);
 const skip = serverMissing() || browserMissing();
-
-/** A flight of 8 s whose blackout loses the estimator. */
-const kPlanted = [
-  'duration_s=8',
-  'flight.course.leg_length_m=100',
-  'camera.width_px=320',
-  'camera.height_px=240',
-  'camera.rate_hz=16',
-  'estimators=[{"name":"feature","type":"feature"}]',
-  'faults=[{"kind":"blackout","at_s":4,"duration_s":3}]',
-];
 
 const kShort = {
   format_version: 1,
@@ -51,7 +40,7 @@ describe('studies', { skip, timeout: 900_000 }, () => {
       const scenarios = path.join(path.dirname(runs), 'scenarios');
       mkdirSync(scenarios);
       writeFileSync(path.join(scenarios, 'short.json'), JSON.stringify(kShort));
-      flyCourse(runs, 'planted', kPlanted);
+      flyCourse(runs, 'planted', kBlackout);
       return { scenarios };
     });
     dashboard = stage.dashboard;

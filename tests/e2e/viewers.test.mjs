@@ -6,25 +6,14 @@ import path from 'node:path';
 import { after, before, describe } from 'node:test';
 import { browserMissing, openBrowser } from './support/browser.mjs';
 import { Dashboard } from './support/dashboard.mjs';
-import { flyCourse } from './support/flights.mjs';
-import { callServer, getJson, serverMissing, startServer } from './support/server.mjs';
+import { flyCourse, kBlackout } from './support/flights.mjs';
+import { getJson, launchCourse, serverMissing, startServer } from './support/server.mjs';
 import { openStage } from './support/stage.mjs';
 import { makeStep } from './support/steps.mjs';
 
 const kSize = { width: 1280, height: 800 };
 const kRun = '20260101-000001-seen';
 const kPanels = ['scene', 'camera', 'plots', 'errors'];
-
-/** A flight of 8 s whose blackout loses the estimator, so that it can be explained. */
-const kFlight = [
-  'duration_s=8',
-  'flight.course.leg_length_m=100',
-  'camera.width_px=320',
-  'camera.height_px=240',
-  'camera.rate_hz=16',
-  'estimators=[{"name":"feature","type":"feature"}]',
-  'faults=[{"kind":"blackout","at_s":4,"duration_s":3}]',
-];
 
 /** Controls of the dashboard that only operators have, and what all have. */
 const kDashboard = {
@@ -160,7 +149,7 @@ describe('a viewer', { skip, timeout: 600_000 }, () => {
 
   before(async () => {
     stage = await openStage(kSize, (runs) => {
-      flyCourse(runs, kRun, kFlight);
+      flyCourse(runs, kRun, kBlackout);
       viewerTokenFile = path.join(path.dirname(runs), 'viewer_token');
       return { viewerTokenFile };
     });
@@ -307,20 +296,7 @@ describe('a viewer', { skip, timeout: 600_000 }, () => {
   });
 
   step('watches a flight that the operator starts, and cannot stop it', async () => {
-    const answer = await callServer(stage.server, '/runs', {
-      method: 'POST',
-      headers: { 'content-type': 'application/json' },
-      body: JSON.stringify({
-        scenario: 'course',
-        overrides: {
-          pacing: 'real_time',
-          duration_s: 600,
-          estimators: [{ name: 'baseline_hold', type: 'baseline_hold' }],
-        },
-      }),
-    });
-    assert.equal(answer.status, 201);
-    const { id } = await answer.json();
+    const id = await launchCourse(stage.server, { duration_s: 600 });
     await dashboard.untilStatus(id, 'running');
     await operator.untilStatus(id, 'running');
     const stop = `.run[data-run="${id}"] [data-role=stop]`;

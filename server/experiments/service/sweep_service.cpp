@@ -299,18 +299,22 @@ void SweepService::delete_later(const fs::path& folder) {
   const auto work = [this, folder] {
     std::error_code failure;
     fs::remove_all(folder, failure);
-    if (failure)
+    if (failure) {
       log("error", folder.filename().string(), "cannot be deleted: " + failure.message());
+    }
   };
-  const std::lock_guard lock(mutex_);
-  std::erase_if(deletions_, [](const std::future<void>& deletion) {
-    return deletion.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  });
+  std::future<void> deletion;
   try {
-    deletions_.push_back(std::async(std::launch::async, work));
+    deletion = std::async(std::launch::async, work);
   } catch (const std::system_error&) {
     work();  // There is no thread for it.
+    return;
   }
+  const std::lock_guard lock(mutex_);
+  std::erase_if(deletions_, [](const std::future<void>& earlier) {
+    return earlier.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  deletions_.push_back(std::move(deletion));
 }
 
 void SweepService::request_stop() {

@@ -4,6 +4,17 @@ import { linkSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:f
 import path from 'node:path';
 import { programFile, sourceFile } from './server.mjs';
 
+/** Overrides of the course: 8 s, of which a blackout loses the estimator. */
+export const kBlackout = [
+  'duration_s=8',
+  'flight.course.leg_length_m=100',
+  'camera.width_px=320',
+  'camera.height_px=240',
+  'camera.rate_hz=16',
+  'estimators=[{"name":"feature","type":"feature"}]',
+  'faults=[{"kind":"blackout","at_s":4,"duration_s":3}]',
+];
+
 /** Flies the course into a folder of runs. @param fields  "path=value" each */
 export function flyCourse(runs, id, fields) {
   flyScenario('course', runs, id, fields);

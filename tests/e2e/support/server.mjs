@@ -114,6 +114,24 @@ export function callServer({ url, token }, route, options = {}) {
   return fetch(`${url}/api/v1${route}`, { ...options, headers });
 }
 
+/** Launches the course in real time, with an estimator that does nothing. @return the run's id */
+export async function launchCourse(server, overrides) {
+  const answer = await callServer(server, '/runs', {
+    method: 'POST',
+    headers: { 'content-type': 'application/json' },
+    body: JSON.stringify({
+      scenario: 'course',
+      overrides: {
+        pacing: 'real_time',
+        estimators: [{ name: 'baseline_hold', type: 'baseline_hold' }],
+        ...overrides,
+      },
+    }),
+  });
+  if (answer.status !== 201) throw new Error(`POST /runs: ${answer.status}`);
+  return (await answer.json()).id;
+}
+
 /** Reads JSON from the server. */
 export async function getJson(server, route) {
   const answer = await callServer(server, route);
