@@ -3,6 +3,7 @@ import { textureHint } from '../../store/errors/error_table';
 import { formatDate, formatDuration, formatNumber } from '../../store/format';
 import { bestFirst } from '../../store/runs/run_order';
 import type { RunTraits } from '../../store/runs/run_traits';
+import { settledText } from '../../store/runs/settled_text';
 import type { EstimatorResult, Run } from '../../protocol/rest_types';
 import { isActive } from '../../protocol/rest_types';
 import { failedEstimators } from '../../store/studies/study_form';
@@ -12,9 +13,6 @@ import type { Context } from '../view';
 
 /** Estimators whose results an entry shows. */
 const kShownResults = 3;
-
-/** What changes while a run waits and flies. */
-const kNoProgress = { frames: 0, duration_ns: 0, queue_position: null, left_s: null, notice: null };
 
 /** What an entry shows in addition to the run. */
 export interface EntryState {
@@ -79,7 +77,7 @@ export class RunEntries {
 
   /** What an entry shows but for the progress of its run. */
   key(run: Run, state: EntryState): string {
-    return JSON.stringify([{ ...run, ...kNoProgress }, state]);
+    return JSON.stringify([settledText(run), state]);
   }
 
   /** Shows the progress of its run in an entry. */
