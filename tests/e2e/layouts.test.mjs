@@ -343,6 +343,16 @@ describe('the frame of the dashboard', { skip, timeout: 900_000 }, () => {
     await page.keyboard.press('Control+k');
     await page.keyboard.press('Escape');
     await page.locator('.palette').waitFor({ state: 'hidden' });
+    // Keys that are typed within one frame are not lost.
+    const focused = await page.evaluate(() => {
+      const press = (key) => {
+        const options = { ...key, bubbles: true, cancelable: true };
+        document.activeElement.dispatchEvent(new KeyboardEvent('keydown', options));
+        return document.activeElement.id === 'palette-input';
+      };
+      return [press({ key: 'k', ctrlKey: true }), press({ key: 'Escape' })];
+    });
+    assert.deepEqual(focused, [true, false]);
     await chooseLayout('fly');
   });
 

@@ -266,25 +266,35 @@ export type Topic = (typeof kTopicNames)[number];
 /** Everything, for a view that is new or was hidden. */
 export const kTopics: ReadonlySet<Topic> = new Set(kTopicNames);
 
+/** When a change is to be seen. */
+export type ShowAt = 'next_frame' | 'now';
+
 export class Store {
   readonly state = new State();
   private changed = new Set<Topic>();
-  private listener: (() => void) | null = null;
+  private listener: ((when: ShowAt) => void) | null = null;
 
   constructor(access: Access = 'operator') {
     this.state.access = access;
   }
 
-  /** Calls back once when something has changed since the last take(). */
-  onChange(listener: () => void): void {
+  /** Calls back once when something has changed since the last take(), and whenever it must be shown now. */
+  onChange(listener: (when: ShowAt) => void): void {
     this.listener = listener;
-    if (this.changed.size > 0) listener();
+    if (this.changed.size > 0) listener('next_frame');
   }
 
   change(...topics: Topic[]): void {
     const quiet = this.changed.size === 0;
     for (const topic of topics) this.changed.add(topic);
-    if (quiet) this.listener?.();
+    if (quiet) this.listener?.('next_frame');
+  }
+
+  /** Shown at once: of keys that follow within the frame none is lost. */
+  openPalette(open: boolean): void {
+    this.state.paletteOpen = open;
+    this.changed.add('palette');
+    this.listener?.('now');
   }
 
   /** Everything may look different then. */

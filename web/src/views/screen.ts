@@ -31,13 +31,16 @@ export function showScreen(context: Context, place: HTMLElement): void {
   acceptFiles(context);
   guardChanges(context.store.state);
   for (const view of views) view.update(kTopics);
-  context.store.onChange(() => {
-    requestAnimationFrame(() => {
-      const changed = context.store.take();
-      // Also for panels that are hidden: plots and the 3D view follow the chosen alignment.
-      if (changed.has('metrics') || changed.has('run')) void context.alignment.refresh();
-      showAccess(context.store.state.access);
-      for (const view of views) view.update(changed);
-    });
+  const draw = () => {
+    const changed = context.store.take();
+    if (changed.size === 0) return;
+    // Also for panels that are hidden: plots and the 3D view follow the chosen alignment.
+    if (changed.has('metrics') || changed.has('run')) void context.alignment.refresh();
+    showAccess(context.store.state.access);
+    for (const view of views) view.update(changed);
+  };
+  context.store.onChange((when) => {
+    if (when === 'now') draw();
+    else requestAnimationFrame(draw);
   });
 }

@@ -16,6 +16,17 @@ describe('Store', () => {
     expect(listener).toHaveBeenCalledTimes(2);
   });
 
+  it('shows the palette without waiting for the next frame', () => {
+    const store = new Store();
+    const listener = vi.fn();
+    store.onChange(listener);
+    store.change('run');
+    store.openPalette(true);
+    expect(listener.mock.calls).toEqual([['next_frame'], ['now']]);
+    expect([...store.take()]).toEqual(['run', 'palette']);
+    expect(store.state.paletteOpen).toBe(true);
+  });
+
   it('redraws everything for another access, and nothing for the same', () => {
     const store = new Store();
     store.setAccess('operator');

@@ -70,8 +70,7 @@ export class Palette implements View {
   }
 
   private close(): void {
-    this.context.store.state.paletteOpen = false;
-    this.context.store.change('palette');
+    this.context.store.openPalette(false);
   }
 
   private open(): void {
@@ -86,6 +85,7 @@ export class Palette implements View {
 
   private leave(): void {
     this.root.hidden = true;
+    this.input.blur(); // the page itself takes no focus
     if (this.before instanceof HTMLElement) this.before.focus();
   }
 
@@ -108,9 +108,8 @@ export class Palette implements View {
 
   private run(command: Command | undefined): void {
     if (command === undefined) return;
+    // Before the command: a page that it opens takes the focus.
     this.close();
-    // A page that the command opens takes the focus.
-    this.leave();
     command.run();
   }
 

@@ -130,10 +130,7 @@ export const kShortcuts: readonly Shortcut[] = [
     label: 'Ctrl K',
     what: 'every command by name',
     overPages: true,
-    run: ({ store }) => {
-      store.state.paletteOpen = true;
-      store.change('palette');
-    },
+    run: ({ store }) => store.openPalette(true),
   },
   {
     keys: ['t'],
@@ -216,8 +213,7 @@ export function closeTopmost(context: Context): void {
   if (state.helpOpen) {
     toggleHelp(store);
   } else if (state.paletteOpen) {
-    state.paletteOpen = false;
-    store.change('palette');
+    store.openPalette(false);
   } else if (state.connect.open) {
     connect.close();
   } else if (state.topPage !== null) {
