@@ -203,6 +203,7 @@ export class Catalogue {
     const document = this.checkedDocument();
     if (state.launching || document === null) return false;
     state.launching = true;
+    const { choice } = this;
     // The server checks it now: an earlier check does not answer any more.
     state.scenarioEdits = new Map(state.scenarioEdits);
     state.scenarioEditor.check = state.scenarioEdits.size === 0 ? 'none' : 'done';
@@ -218,7 +219,9 @@ export class Catalogue {
         started = true;
       }
     } catch (error) {
-      state.launchErrors = fieldErrorsOf(error);
+      // They are about the scenario that was shown then.
+      if (this.choice === choice) state.launchErrors = fieldErrorsOf(error);
+      else this.notices.error(`Nothing was flown: ${errorText(error)}`);
     }
     state.launching = false;
     this.store.change('launch', 'lists');

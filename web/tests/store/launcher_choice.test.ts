@@ -101,6 +101,35 @@ describe('Catalogue with a slow server', () => {
     expect(store.state.scenarioDocument).toEqual(kFlown);
   });
 
+  it('does not show the errors of a refused launch at another scenario', async () => {
+    const refusal = {
+      error: {
+        code: 'invalid_scenario',
+        message: 'the scenario is invalid',
+        faults: [{ field: 'seed', message: 'must be at most 3' }],
+      },
+    };
+    const refusedAfter = async (choose: () => void) => {
+      await give('/scenarios/course', kCourse);
+      answer.clear();
+      const launched = catalogue.launch();
+      await give('/scenarios/course', kCourse);
+      choose();
+      await give('/scenarios/hover', { seed: 2 });
+      answer.get('/runs')?.(Response.json(refusal, { status: 422 }));
+      expect(await launched).toBe(false);
+      return store.state.launchErrors.map(({ field }) => field);
+    };
+    void catalogue.selectScenario('course');
+    expect(await refusedAfter(() => undefined)).toEqual(['seed']);
+    expect(store.state.notices).toEqual([]);
+    void catalogue.selectScenario('course');
+    expect(await refusedAfter(() => void catalogue.selectScenario('hover'))).toEqual([]);
+    expect(store.state.notices.map(({ text }) => text)).toEqual([
+      'Nothing was flown: the scenario is invalid',
+    ]);
+  });
+
   it('takes the scenario if the run cannot be flown again', async () => {
     void catalogue.selectScenario('course');
     void catalogue.repeat(kRun);
