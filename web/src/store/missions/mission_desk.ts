@@ -53,7 +53,7 @@ export class MissionDesk extends MissionEditor {
       rest,
       later,
       () => this.document(),
-      () => writeDraft(this.storage, this.page.draft),
+      () => this.keepDraft(),
     );
   }
 
@@ -290,6 +290,11 @@ export class MissionDesk extends MissionEditor {
     return JSON.stringify(this.document());
   }
 
+  /** In the browser, with the name under which it is saved: another name would replace another scenario. */
+  private keepDraft(): void {
+    writeDraft(this.storage, this.page.draft);
+  }
+
   /** Saves the draft as a scenario. @param copy  under a new name */
   async save(copy = false): Promise<void> {
     const { page } = this;
@@ -310,6 +315,7 @@ export class MissionDesk extends MissionEditor {
         page.savedText = JSON.stringify(sent);
         this.kept = drawnText({ ...draft, title: titled(draft.title) });
         page.notes = [`Saved as ${name}.`];
+        this.keepDraft();
       }
       await this.onScenarios();
       await this.worlds.read();
@@ -325,6 +331,7 @@ export class MissionDesk extends MissionEditor {
         this.page.draft = { ...draft, name: null };
         this.page.savedText = null;
         this.kept = null;
+        this.keepDraft();
       }
       await this.onScenarios();
     });

@@ -29,6 +29,8 @@ export class ItemList {
     'No items yet. Choose what to place above the map, then click the map.',
   );
   private readonly form: ItemForm;
+  /** What was selected when the list was last shown. */
+  private selected: number | null = null;
 
   constructor(private readonly desk: MissionDesk) {
     this.form = new ItemForm(desk);
@@ -45,7 +47,11 @@ export class ItemList {
     rebuild(this.list, JSON.stringify([rows, selected]), () =>
       rows.map((row) => this.row(row, row.id === selected)),
     );
-    this.list.querySelector('[aria-current=true]')?.scrollIntoView({ block: 'nearest' });
+    // Only to a new one: the page is drawn again whenever the runs are read.
+    if (selected !== this.selected) {
+      this.list.querySelector('[aria-current=true]')?.scrollIntoView({ block: 'nearest' });
+    }
+    this.selected = selected;
     this.form.show(page);
   }
 

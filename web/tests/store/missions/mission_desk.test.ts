@@ -136,6 +136,22 @@ describe('MissionDesk', () => {
     ]);
   });
 
+  it('knows after a reload of the page what the mission is saved as', async () => {
+    bench.answers['PUT api/scenarios/hill'] = () => [201, {}];
+    bench.answers['DELETE api/scenarios/hill'] = () => [204, null];
+    const desk = bench.makeDesk();
+    await desk.open();
+    desk.add(kCommand.waypoint, [39.36, -86.03]);
+    desk.set({ title: 'Hill' });
+    await bench.settle();
+    await desk.save();
+    await bench.makeDesk().open();
+    expect(bench.page.draft?.name).toBe('hill');
+    await desk.removeScenario('hill');
+    await bench.makeDesk().open();
+    expect(bench.page.draft).toMatchObject({ title: 'Hill', name: null });
+  });
+
   it('undoes edits, but not that the mission is saved', async () => {
     bench.answers['PUT api/scenarios/hill'] = () => [201, {}];
     bench.answers['GET api/scenarios/other'] = () => [200, { ...kCourse, camera: { rate_hz: 5 } }];
