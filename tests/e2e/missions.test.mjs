@@ -145,6 +145,26 @@ describe('missions drawn on the map', { skip, timeout: 900_000 }, () => {
     await reported();
   });
 
+  step('takes no keys while another page lies over it', async () => {
+    await rows().nth(1).locator('.mission-item').click();
+    await page.keyboard.press('Control+k');
+    await page.locator('#palette-input').fill('score trajectories');
+    await page.keyboard.press('Enter');
+    await page.locator('.log-overlay[data-panel=scoring]').waitFor();
+    await page.evaluate(() => document.activeElement.blur());
+    const count = await rows().count();
+    await page.keyboard.press('Delete');
+    await drawn();
+    assert.equal(await rows().count(), count);
+    await page.keyboard.press('Escape');
+    await page.locator('.log-overlay[data-panel=scoring]').waitFor({ state: 'hidden' });
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press('Delete');
+    await untilItems(count - 1);
+    await page.keyboard.press('Control+z');
+    await untilItems(count);
+  });
+
   step('counts a height from elsewhere and leaves the item where it is', async () => {
     await drawn();
     await reported();

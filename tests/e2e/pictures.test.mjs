@@ -142,7 +142,13 @@ describe('pictures of a camera', { skip, timeout: 600_000 }, () => {
     await page.keyboard.press('0');
     await dashboard.until(() => document.querySelector('.picture-view.zoomed') === null);
     assert.equal((await dashboard.playback()).t_ns, t_ns);
-    await view('camera').evaluate((root) => root.blur());
+    // After a click into it the keys are for the playback again.
+    const { frame } = await dashboard.playback();
+    await view('camera').click();
+    await page.keyboard.press('ArrowRight');
+    await dashboard.untilCursor(frame + 1);
+    await page.keyboard.press('ArrowLeft');
+    await dashboard.untilCursor(frame);
   });
 
   step("shows how far off an estimate's view is", async () => {

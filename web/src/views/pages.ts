@@ -69,10 +69,10 @@ export function acceptFiles(context: Context): void {
     event.preventDefault();
     const files = [...(event.dataTransfer?.files ?? [])];
     if (files.length === 0) return;
-    const { scorePage, calibrationPage, missionPage } = context.store.state;
-    if (missionPage.open && files[0] !== undefined) void context.missions.import(files[0]);
-    else if (calibrationPage.open) upload(context, () => context.calibration.send(files));
-    else if (scorePage.open) upload(context, () => context.scores.send(files));
+    const { scorePage, calibrationPage, missionPage, topPage } = context.store.state;
+    if (topPage === missionPage && files[0] !== undefined) void context.missions.import(files[0]);
+    else if (topPage === calibrationPage) upload(context, () => context.calibration.send(files));
+    else if (topPage === scorePage) upload(context, () => context.scores.send(files));
     else void acceptLayoutOrLogs(context, files);
   });
 }

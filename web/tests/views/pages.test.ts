@@ -37,7 +37,7 @@ function dropFile(name: string, text: string): void {
 async function dropEverywhere(entries: number): Promise<void> {
   const { calibrationPage, missionPage, scorePage } = store.state;
   for (const page of [calibrationPage, scorePage, missionPage]) {
-    page.open = true;
+    store.state.openPage(page);
     dropFile('a.txt', 'x');
     page.open = false;
   }
@@ -50,6 +50,14 @@ describe('dropped files', () => {
   it('are taken where they belong', async () => {
     await dropEverywhere(6);
     expect(done.sort()).toEqual(['image', 'layout', 'log', 'logs', 'mission', 'trajectory']);
+  });
+
+  it('are taken by the page that lies over the others', async () => {
+    const { missionPage, scorePage } = store.state;
+    store.state.openPage(missionPage);
+    store.state.openPage(scorePage);
+    dropFile('a.txt', 'x');
+    await expect.poll(() => done).toEqual(['trajectory']);
   });
 
   it('of a viewer go nowhere but into this browser', async () => {

@@ -234,8 +234,8 @@ export class MissionPageView implements View {
   /** After a click on a button or on the map nothing has the focus, but keys are for this page. */
   private listenToKeys(): void {
     const listen = (event: KeyboardEvent) => {
-      const { missionPage, paletteOpen, helpOpen } = this.context.store.state;
-      const isFree = missionPage.open && !paletteOpen && !helpOpen;
+      const { missionPage, topPage, connect, paletteOpen, helpOpen } = this.context.store.state;
+      const isFree = topPage === missionPage && !connect.open && !paletteOpen && !helpOpen;
       if (isFree && event.target === document.body) this.onKey(event);
     };
     document.addEventListener('keydown', listen, true);

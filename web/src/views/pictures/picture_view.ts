@@ -272,6 +272,8 @@ export class PictureView {
     root.addEventListener('pointerup', release);
     root.addEventListener('pointercancel', release);
     root.addEventListener('pointerleave', () => this.leave());
+    // After a click the keys of the screen go on working.
+    root.addEventListener('click', () => root.blur());
     root.addEventListener('dblclick', () => this.setZoom(kWholePicture));
     root.addEventListener(
       'wheel',
