@@ -65,6 +65,8 @@ export class LogBrowser {
   private sending: AbortController | null = null;
   /** Logs that wait for the one that is being uploaded. */
   private unsent: UploadSet<File>[] = [];
+  /** Whether the viewer has chosen a log since the last files were given: uploads then change nothing of it. */
+  private choseMeanwhile = false;
   /** Number of the latest request for the list. */
   private listing = 0;
 
@@ -111,6 +113,11 @@ export class LogBrowser {
   }
 
   async choose(name: string): Promise<void> {
+    this.choseMeanwhile = true;
+    await this.show(name);
+  }
+
+  private async show(name: string): Promise<void> {
     const { page } = this;
     page.chosen = name;
     page.info = null;
@@ -162,6 +169,7 @@ export class LogBrowser {
     this.changed();
     if (typeof sets === 'string') return;
     this.unsent.push(...sets);
+    this.choseMeanwhile = false;
     await this.sendNext();
   }
 
@@ -202,7 +210,7 @@ export class LogBrowser {
     }
     // The next upload may begin meanwhile.
     await this.readList();
-    await this.choose(entry.name);
+    if (!this.choseMeanwhile) await this.show(entry.name);
   }
 
   cancelUpload(): void {
@@ -252,7 +260,8 @@ export class LogBrowser {
         this.store.change('lists');
       }
     } catch (error) {
-      page.flightErrors = fieldErrorsOf(error);
+      if (page.chosen === entry.name) page.flightErrors = fieldErrorsOf(error);
+      else page.flightErrors = [{ field: '', message: `${entry.name}: ${errorText(error)}` }];
     }
     page.starting = false;
     this.changed();

@@ -179,6 +179,37 @@ describe('LogBrowser', () => {
     expect(uploads).toHaveLength(2);
   });
 
+  it('leaves the log alone that was chosen during an upload', async () => {
+    void browser.send([file('a.bin')]);
+    void browser.choose('b.bin');
+    await answer('GET', '/logs/b.bin', info('b.bin'));
+    await answer('GET', '/logs/b.bin/series', kSeries);
+    browser.set({ source: 'EKF' });
+    uploads[0]?.({ status: 201, text: JSON.stringify(entry('a.bin')) });
+    await settle();
+    await answer('GET', '/logs', list('a.bin', 'b.bin'));
+    expect(page().chosen).toBe('b.bin');
+    expect(page().flight.source).toBe('EKF');
+  });
+
+  it('names the log whose flight was refused, if another one is shown', async () => {
+    void browser.readList();
+    await answer('GET', '/logs', list('a.bin', 'b.bin'));
+    const refusedAfter = async (choose: () => void) => {
+      void browser.choose('a.bin');
+      await answer('GET', '/logs/a.bin', info('a.bin'));
+      await answer('GET', '/logs/a.bin/series', kSeries);
+      browser.set({ scenario: 'course' });
+      void browser.fly();
+      choose();
+      const refusal = { error: { code: 'not_found', message: 'no scenario' } };
+      await answer('GET', '/scenarios/course', Response.json(refusal, { status: 404 }));
+      return page().flightErrors.map(({ message }) => message);
+    };
+    expect(await refusedAfter(() => undefined)).toEqual(['no scenario']);
+    expect(await refusedAfter(() => void browser.choose('b.bin'))).toEqual(['a.bin: no scenario']);
+  });
+
   it('says why a log could not be deleted', async () => {
     void browser.remove('a.bin');
     const error = { code: 'conflict', message: 'it is in use' };
