@@ -51,7 +51,9 @@ export class SweepForm {
       form.files = await this.client.files();
       form.jobs = form.files.jobs.default;
       const first = form.files.files.find(({ error }) => error === null);
-      if (first !== undefined && this.form === form) await this.chooseFile(first.name);
+      if (first !== undefined && this.form === form && form.text === '') {
+        await this.readFile(form, first.name, '');
+      }
     } catch (error) {
       form.errors = fieldErrorsOf(error);
     }
@@ -67,7 +69,7 @@ export class SweepForm {
       const sought = this.store.state.sweepPage.sweeps?.find((one) => one.name === name)?.envelope;
       if (sought) form.border = { axis: sought.axis, estimator: sought.estimator };
       const document = await this.client.document(name);
-      if (this.form === form) this.load(form, document);
+      if (this.form === form && form.text === '') this.load(form, document);
     } catch (error) {
       form.errors = fieldErrorsOf(error);
     }
@@ -82,14 +84,20 @@ export class SweepForm {
 
   async chooseFile(name: string): Promise<void> {
     const { form } = this;
-    if (form === null) return;
+    if (form !== null) await this.readFile(form, name, form.name);
+  }
+
+  /** What is typed while the file is read stays. @param replaced  the sweep's name that may be replaced */
+  private async readFile(form: SweepFormState, name: string, replaced: string): Promise<void> {
+    const { text } = form;
     form.file = name;
     this.changed();
     try {
       const document = await this.client.file(name);
       if (this.form !== form || form.file !== name) return;
-      form.name = this.freeName(name);
-      this.load(form, document);
+      if (form.name === replaced) form.name = this.freeName(name);
+      if (form.text === text) this.load(form, document);
+      else form.file = null;
     } catch (error) {
       form.errors = fieldErrorsOf(error);
     }

@@ -80,10 +80,13 @@ export class StudyFormView {
     // Typed texts are not in the key: the fields that have the focus stay.
     const paths = form.axes.map(({ path }) => path);
     const { kind, run, source, document, estimator, camera } = form;
-    const runs = this.context.studies.form.runsOf(form).map(({ id }) => id);
-    const known = [kind, run, source, document !== null, estimator, camera, form.map, runs];
-    const scenarios = this.context.store.state.scenarios?.map(({ name }) => name);
-    rebuild(this.fields, JSON.stringify([known, paths, scenarios, limits !== null]), () =>
+    const known = [kind, run, source, document !== null, estimator, camera, form.map];
+    // What a kind does not offer may change without its fields.
+    const offered =
+      kind === 'explain'
+        ? this.context.studies.form.runsOf(form).map(({ id }) => id)
+        : this.context.store.state.scenarios?.map(({ name }) => name);
+    rebuild(this.fields, JSON.stringify([known, paths, offered, limits !== null]), () =>
       this.fieldsOf(form, limits),
     );
     this.drawErrors(form);

@@ -83,6 +83,23 @@ describe('SweepForm', () => {
     expect(JSON.parse(shown().text)).toEqual(kDocument);
   });
 
+  it('keeps what is typed while the file is read', async () => {
+    const opened = form.open();
+    form.setName('mine');
+    await opened;
+    await settle();
+    expect(shown()).toMatchObject({ file: 'quick', name: 'mine' });
+    expect(JSON.parse(shown().text)).toEqual(kDocument);
+    const again = form.open();
+    form.setText('{"a": 1}');
+    await again;
+    expect(shown()).toMatchObject({ file: null, name: '', text: '{"a": 1}' });
+    const chosen = form.chooseFile('quick');
+    form.setText('{"a": 2}');
+    await chosen;
+    expect(shown()).toMatchObject({ file: null, name: 'quick', text: '{"a": 2}' });
+  });
+
   it('starts the search of a border along an axis that the document has', async () => {
     await form.open();
     await settle();
