@@ -1,9 +1,10 @@
 // Scenarios and runs of the server: listed, launched, cancelled and deleted over REST.
 import type { RestClient } from '../connection/rest_client';
-import { errorText, fieldErrorsOf } from '../connection/rest_error';
+import { errorText, fieldErrorsOf, isPassing } from '../connection/rest_error';
 import type { JsonObject, Run, ScenarioEntry } from '../protocol/rest_types';
 import { isActive } from '../protocol/rest_types';
 import type { Notices } from './notices';
+import { withNewer } from './runs/newer_runs';
 import { SilentRuns } from './runs/silent_runs';
 import type { ShownScenario } from './scenario/draft';
 import {
@@ -35,6 +36,8 @@ export class Catalogue {
   private readonly kept = new KeptEdits();
   /** Number of the latest choice of a scenario. */
   private selection = 0;
+  /** Number of a choice whose scenario could not be read because the server was away or busy. */
+  private unread: number | null = null;
 
   constructor(
     private readonly store: Store,
@@ -76,8 +79,14 @@ export class Catalogue {
     this.leaveDeleted(state.scenarios);
     const flyable = state.scenarios.filter(({ error }) => error === null);
     const first = flyable.find(({ name }) => name === kPreferred) ?? flyable[0];
-    if (state.scenarioName !== null) await this.readAgain(state.scenarioName);
+    if (state.scenarioName !== null && this.isUnread) {
+      await this.selectScenario(state.scenarioName);
+    } else if (state.scenarioName !== null) await this.readAgain(state.scenarioName);
     else if (first !== undefined) await this.selectScenario(first.name);
+  }
+
+  private get isUnread(): boolean {
+    return this.unread === this.choice;
   }
 
   /** Somebody may have deleted the scenario that the launcher shows. */
@@ -139,6 +148,7 @@ export class Catalogue {
     } catch (error) {
       if (!isCurrent()) return;
       state.launchErrors = [{ field: '', message: errorText(error) }];
+      if (isPassing(error)) this.unread = selection;
     }
     this.store.change('launch');
   }
@@ -315,7 +325,7 @@ export class Catalogue {
       this.silent.beginList();
       for (const run of listed) this.takeListed(run);
       this.announceDeleted(before, listed);
-      if (state.scenarios === null) await this.readScenarios();
+      if (state.scenarios === null || this.isUnread) await this.readScenarios();
     } catch (error) {
       state.listError = errorText(error);
     }
@@ -377,23 +387,4 @@ export class Catalogue {
     const soon = active || failing || this.silent.any;
     this.later(() => void this.poll(), soon ? kPollActive_ms : kPollIdle_ms);
   }
-}
-
-/**
- * A list of the server with what came while it was on its way: runs as the stream has changed them, and
- * runs that were started.
- * @param before  the runs when the list was asked for
- * @param now  the runs when it came
- */
-function withNewer(listed: readonly Run[], before: readonly Run[], now: readonly Run[]): Run[] {
-  const asked = new Set(before);
-  const newer = new Map(now.filter((run) => !asked.has(run)).map((run) => [run.id, run]));
-  const known = new Set([...before, ...listed].map(({ id }) => id));
-  const started = now.filter(({ id }) => !known.has(id));
-  const merged = listed.map((run) => {
-    const { results, tags, note } = run;
-    const streamed = newer.get(run.id);
-    return streamed === undefined ? run : { ...streamed, results, tags, note };
-  });
-  return [...started, ...merged];
 }

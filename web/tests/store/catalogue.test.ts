@@ -37,6 +37,26 @@ describe('Catalogue', () => {
     expect(store.state.launchErrors).toEqual([{ field: '', message: 'no data' }]);
   });
 
+  it('reads a scenario again that could not be read while the server was away', async () => {
+    let away = true;
+    let asked = 0;
+    const { store, subject } = catalogue({
+      ...reading,
+      'GET /runs': () => [200, { runs: [] }],
+      'GET /scenarios/course': () => {
+        ++asked;
+        return away ? [503, { error: { code: 'busy', message: 'busy' } }] : [200, document];
+      },
+    });
+    await subject.readScenarios();
+    expect(store.state.launchErrors).toEqual([{ field: '', message: 'busy' }]);
+    away = false;
+    await subject.readRuns();
+    expect(store.state).toMatchObject({ scenarioDocument: document, launchErrors: [] });
+    await subject.readRuns();
+    expect(asked).toBe(2);
+  });
+
   it('launches a run, lists it and watches it', async () => {
     const { store, socket, subject } = catalogue({
       ...reading,
