@@ -291,7 +291,7 @@ export class Store {
   }
 
   /** Shown at once: of keys that follow within the frame none is lost. */
-  openPalette(open: boolean): void {
+  setPaletteOpen(open: boolean): void {
     this.state.paletteOpen = open;
     this.changed.add('palette');
     this.listener?.('now');

@@ -74,6 +74,7 @@ export class HeaderBar implements View {
         'aria-label': 'Commands',
         'data-role': 'open-palette',
         onclick: () => {
+          // In the next frame, once the click has taken the focus from the button: it would get it back.
           context.store.state.paletteOpen = true;
           context.store.change('palette');
         },

@@ -21,7 +21,7 @@ describe('Store', () => {
     const listener = vi.fn();
     store.onChange(listener);
     store.change('run');
-    store.openPalette(true);
+    store.setPaletteOpen(true);
     expect(listener.mock.calls).toEqual([['next_frame'], ['now']]);
     expect([...store.take()]).toEqual(['run', 'palette']);
     expect(store.state.paletteOpen).toBe(true);

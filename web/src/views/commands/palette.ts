@@ -70,7 +70,7 @@ export class Palette implements View {
   }
 
   private close(): void {
-    this.context.store.openPalette(false);
+    this.context.store.setPaletteOpen(false);
   }
 
   private open(): void {

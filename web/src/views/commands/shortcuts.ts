@@ -130,7 +130,7 @@ export const kShortcuts: readonly Shortcut[] = [
     label: 'Ctrl K',
     what: 'every command by name',
     overPages: true,
-    run: ({ store }) => store.openPalette(true),
+    run: ({ store }) => store.setPaletteOpen(true),
   },
   {
     keys: ['t'],
@@ -213,7 +213,7 @@ export function closeTopmost(context: Context): void {
   if (state.helpOpen) {
     toggleHelp(store);
   } else if (state.paletteOpen) {
-    store.openPalette(false);
+    store.setPaletteOpen(false);
   } else if (state.connect.open) {
     connect.close();
   } else if (state.topPage !== null) {
