@@ -24,8 +24,10 @@ macro(overfly_compile_with_clang)
       set(CMAKE_CXX_COMPILE_OPTIONS_INSTANTIATE_TEMPLATES_PCH -fpch-instantiate-templates)
       set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH
           -Xclang -include-pch -Xclang <PCH_FILE> -Xclang -include -Xclang <PCH_HEADER>)
+      # Without times: an upgraded package has headers of another time, but older than the precompiled ones, and
+      # ccache returns headers that were precompiled from equal files of another time. Clang refuses both.
       set(CMAKE_CXX_COMPILE_OPTIONS_CREATE_PCH
-          -Xclang -emit-pch -Xclang -include -Xclang <PCH_HEADER> -x c++-header)
+          -Xclang -emit-pch -Xclang -fno-pch-timestamp -Xclang -include -Xclang <PCH_HEADER> -x c++-header)
     endif()
   endif()
 endmacro()

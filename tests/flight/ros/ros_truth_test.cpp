@@ -184,13 +184,16 @@ TEST(RosTruth, HasTheSensorsOfTheRawMessages) {
   const std::int64_t start_ns = start_of(file, false);
   constexpr std::int64_t kLastNs = 55 * kNsPerS;
   ASSERT_TRUE((*truth)->state_at(kLastNs).ok());
-  // Each topic has a connection of its own.
+  // Each topic has a connection of its own: any of them may be the last.
   SampleSource* const source = (*truth)->sample_source();
   ASSERT_NE(source, nullptr);
   SensorSamples published;
   for (int i = 0; i < 500; ++i) {
     append(published, source->take_samples(kLastNs));
-    if (published.imu.size() > 2700 && published.barometer.size() > 50) break;
+    if (published.imu.size() > 2700 && published.magnetometer.size() > 2700 &&
+        published.barometer.size() > 50 && published.gps.size() > 2000) {
+      break;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   // The same messages read as a recording of the vehicle.
