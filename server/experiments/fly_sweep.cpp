@@ -11,9 +11,11 @@
 #include <thread>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "server/experiments/flights/flight_files.hpp"
 #include "server/experiments/flights/flight_process.hpp"
 #include "server/experiments/keys/plain_numbers.hpp"
+#include "server/experiments/outdated_results.hpp"
 #include "server/files/build_info.hpp"
 #include "server/files/whole_file.hpp"
 #include "server/runs/run_memory.hpp"
@@ -93,7 +95,7 @@ class SweepFlyer {
   Status start_flights() {
     while (executor_->running() < options_.jobs && !cancelled()) {
       if (!waiting_) {
-        Result<std::optional<DueFlight>> due = flown_.plan.next(flown_.results);
+        Result<std::optional<DueFlight>> due = flown_.plan.next(flown_.results, options_.cancel);
         if (!due) return due.error();
         waiting_ = std::move(*due);
         if (Status status = record_shared(); !status) return status;
@@ -301,6 +303,27 @@ Result<Json> sweep_record(const Sweep& sweep, const SweepPlan& plan) {
   return record;
 }
 
+/// @pre the sweep's folder is locked
+Result<FlownSweep> fly_plan(const Sweep& sweep, SweepPlan plan, const SweepOptions& options) {
+  Result<SweepResults> results = SweepResults::open(options.folder);
+  if (!results) return results.error();
+  if (results->unreadable_lines() > 0 && options.warn) {
+    options.warn("results.jsonl: " + std::to_string(results->unreadable_lines()) +
+                 " lines are no results and are ignored");
+  }
+  if (Status status = write_sweep(sweep, plan, options.folder); !status) return status.error();
+  std::unique_ptr<FlightExecutor> executor;
+  if (options.open_executor) {
+    Result<std::unique_ptr<FlightExecutor>> opened = options.open_executor();
+    if (!opened) return opened.error();
+    executor = std::move(*opened);
+  } else {
+    executor = std::make_unique<FlightProcesses>(options.program, options.flight_options);
+  }
+  return SweepFlyer(sweep, options, std::move(executor), std::move(plan), std::move(*results))
+      .fly();
+}
+
 }  // namespace
 
 Result<RunLock> lock_sweep(const fs::path& folder) {
@@ -308,10 +331,33 @@ Result<RunLock> lock_sweep(const fs::path& folder) {
   return RunLock::take(folder);
 }
 
+Status withdraw_outdated(const Sweep& sweep, const SweepOptions& options) {
+  Result<SweepResults> results = SweepResults::open(options.folder);
+  if (!results) return results.error();
+  const Result<std::vector<SweepResult>> outdated =
+      outdated_results(sweep, *results, options.cancel);
+  if (!outdated) return outdated.error();
+  for (const SweepResult& result : *outdated) {
+    if (Status status = results->withdraw(result); !status) return status;
+  }
+  return {};
+}
+
 Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options) {
   Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
-  return fly_cells(sweep, std::move(*cells), options);
+  // A sweep with an invalid cell changes no result.
+  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells), options.cancel);
+  if (!plan) return plan.error();
+  SweepOptions locked = options;
+  std::optional<RunLock> own;
+  if (options.lock == nullptr) {
+    Result<RunLock> lock = lock_sweep(options.folder);
+    if (!lock) return lock.error();
+    locked.lock = &own.emplace(std::move(*lock));
+  }
+  if (Status status = withdraw_outdated(sweep, locked); !status) return status.error();
+  return fly_plan(sweep, std::move(*plan), locked);
 }
 
 Status write_sweep(const Sweep& sweep, const SweepPlan& plan, const fs::path& folder) {
@@ -335,37 +381,20 @@ Result<Json> read_sweep_document(const fs::path& folder) {
 Result<FlownSweep> fly_cells(const Sweep& sweep,
                              std::vector<SweepCell> cells,
                              const SweepOptions& options) {
-  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(cells));
+  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(cells), options.cancel);
   if (!plan) return plan.error();
-  std::optional<RunLock> own;
-  if (options.lock == nullptr) {
-    Result<RunLock> lock = lock_sweep(options.folder);
-    if (!lock) return lock.error();
-    own.emplace(std::move(*lock));
-  }
-  Result<SweepResults> results = SweepResults::open(options.folder);
-  if (!results) return results.error();
-  if (results->unreadable_lines() > 0 && options.warn) {
-    options.warn("results.jsonl: " + std::to_string(results->unreadable_lines()) +
-                 " lines are no results and are ignored");
-  }
-  if (Status status = write_sweep(sweep, *plan, options.folder); !status) return status.error();
-  std::unique_ptr<FlightExecutor> executor;
-  if (options.open_executor) {
-    Result<std::unique_ptr<FlightExecutor>> opened = options.open_executor();
-    if (!opened) return opened.error();
-    executor = std::move(*opened);
-  } else {
-    executor = std::make_unique<FlightProcesses>(options.program, options.flight_options);
-  }
-  return SweepFlyer(sweep, options, std::move(executor), std::move(*plan), std::move(*results))
-      .fly();
+  if (options.lock != nullptr) return fly_plan(sweep, std::move(*plan), options);
+  const Result<RunLock> lock = lock_sweep(options.folder);
+  if (!lock) return lock.error();
+  return fly_plan(sweep, std::move(*plan), options);
 }
 
-Result<FlownSweep> read_sweep(const Sweep& sweep, const fs::path& folder) {
+Result<FlownSweep> read_sweep(const Sweep& sweep,
+                              const fs::path& folder,
+                              const std::atomic<bool>* cancel) {
   Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
-  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells));
+  Result<SweepPlan> plan = SweepPlan::make(sweep, std::move(*cells), cancel);
   if (!plan) return plan.error();
   Result<SweepResults> results = SweepResults::read(folder);
   if (!results) return results.error();
@@ -373,8 +402,9 @@ Result<FlownSweep> read_sweep(const Sweep& sweep, const fs::path& folder) {
   flown.progress.most = flown.plan.most_flights();
   // Every flight that is due is passed over, so that the plan reaches all known repeats.
   for (;;) {
-    Result<std::optional<DueFlight>> due = flown.plan.next(flown.results);
+    Result<std::optional<DueFlight>> due = flown.plan.next(flown.results, cancel);
     if (!due) return due.error();
+    if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
     if (!*due) break;
     ++flown.progress.flown;
     flown.plan.over(**due);

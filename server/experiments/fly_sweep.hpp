@@ -59,10 +59,16 @@ struct FlownSweep {
 /// or killed is continued by the next one, and a sweep with more cells or a changed estimator flies
 /// only what is new. A flight that fails is flown again up to Sweep::retries times, then recorded
 /// as failed; the next call tries it again. Errors: as SweepPlan::make; kConflict if another
-/// process works on the folder; kUnsupported if a flight needs more memory than there is; kIo.
+/// process works on the folder; kUnsupported if a flight needs more memory than there is; kIo;
+/// kCancelled before the first flight.
 [[nodiscard]] Result<FlownSweep> fly_sweep(const Sweep& sweep, const SweepOptions& options);
 
-/// As fly_sweep, but flies only some of the sweep's cells.
+/// Withdraws the outdated_results of a sweep's folder; fly_sweep does so before it flies.
+/// @pre the folder is locked
+/// Errors: as outdated_results and SweepResults::open; kIo.
+[[nodiscard]] Status withdraw_outdated(const Sweep& sweep, const SweepOptions& options);
+
+/// As fly_sweep, but flies only some of the sweep's cells and withdraws nothing.
 [[nodiscard]] Result<FlownSweep> fly_cells(const Sweep& sweep,
                                            std::vector<SweepCell> cells,
                                            const SweepOptions& options);
@@ -77,8 +83,9 @@ struct FlownSweep {
 [[nodiscard]] Result<nlohmann::json> read_sweep_document(const std::filesystem::path& folder);
 
 /// Reads the results in a folder without flying.
-/// Errors: as fly_sweep.
+/// Errors: as SweepPlan::make and SweepResults::read; kCancelled.
 [[nodiscard]] Result<FlownSweep> read_sweep(const Sweep& sweep,
-                                            const std::filesystem::path& folder);
+                                            const std::filesystem::path& folder,
+                                            const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::server::experiments

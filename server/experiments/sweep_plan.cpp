@@ -213,8 +213,10 @@ Result<std::optional<DueFlight>> SweepPlan::flight_of(std::size_t cell,
   return std::optional<DueFlight>(std::move(due));
 }
 
-Result<std::optional<DueFlight>> SweepPlan::next(const SweepResults& results) {
+Result<std::optional<DueFlight>> SweepPlan::next(const SweepResults& results,
+                                                 const std::atomic<bool>* cancel) {
   while (const std::optional<std::size_t> cell = next_cell()) {
+    if (is_cancelled(cancel)) break;
     Result<std::optional<DueFlight>> flight = flight_of(*cell, results);
     if (!flight || *flight) return flight;
   }

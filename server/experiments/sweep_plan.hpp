@@ -38,9 +38,10 @@ class SweepPlan {
                                               std::vector<SweepCell> cells,
                                               const std::atomic<bool>* cancel = nullptr);
 
-  /// The next flight that is due; empty if none is, or none before those flying are over.
-  /// Errors: as scenario_of.
-  [[nodiscard]] Result<std::optional<DueFlight>> next(const SweepResults& results);
+  /// The next flight that is due; empty if none is, or none before those flying are over, or once
+  /// cancelled: passing over what is known may take long. Errors: as scenario_of.
+  [[nodiscard]] Result<std::optional<DueFlight>> next(const SweepResults& results,
+                                                      const std::atomic<bool>* cancel = nullptr);
   /// Whether other flights of the plan probably have the same pictures.
   [[nodiscard]] bool shares_pictures(const DueFlight& flight) const;
   /// A flight from next() is over: its results are known, or it is given up.

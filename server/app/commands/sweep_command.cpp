@@ -225,7 +225,8 @@ int sweep(const SweepArguments& arguments) {
     return report(status.error().in("--out"));
   }
   const Result<experiments::FlownSweep> flown =
-      arguments.dry_run ? experiments::read_sweep(*sweep, arguments.out) : fly(*sweep, arguments);
+      arguments.dry_run ? experiments::read_sweep(*sweep, arguments.out, &catch_stop_signals())
+                        : fly(*sweep, arguments);
   if (!flown) return report(flown.error());
   if (arguments.dry_run) {
     print_sweep_plan(*flown);

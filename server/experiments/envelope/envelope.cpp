@@ -107,14 +107,16 @@ Result<const SweepAxis*> axis_along(const Sweep& sweep, const std::string& name)
 /// How much of the whole sweep is flown. For those who watch the folder: errors are noticed where
 /// results are written.
 /// @param now  of the cells that were flown last
-void write_whole_progress(const Sweep& sweep, const fs::path& folder, const SweepProgress& now) {
-  const Result<FlownSweep> whole = read_sweep(sweep, folder);
+void write_whole_progress(const Sweep& sweep,
+                          const SweepOptions& flights,
+                          const SweepProgress& now) {
+  const Result<FlownSweep> whole = read_sweep(sweep, flights.folder, flights.cancel);
   if (!whole) return;
   SweepProgress progress = now;
   progress.passed = whole->progress.passed;
   progress.most = whole->progress.most;
   progress.left_s.reset();
-  (void)write_progress(folder, progress);
+  (void)write_progress(flights.folder, progress);
 }
 
 bool is_line(const Json& line) {
@@ -171,7 +173,7 @@ Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& option
   const SweepAxis* const along = *found;
   const Result<std::vector<SweepCell>> cells = cells_of(sweep);
   if (!cells) return cells.error();
-  const Result<SweepPlan> plan = SweepPlan::make(sweep, *cells);
+  const Result<SweepPlan> plan = SweepPlan::make(sweep, *cells, options.flights.cancel);
   if (!plan) return plan.error();
   BorderSearch border = options.border;
   if (Status status = check_border(sweep, plan->estimators(), border); !status) {
@@ -184,6 +186,7 @@ Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& option
   SweepOptions flights = options.flights;
   flights.lock = &*lock;
   flights.writes_progress = false;
+  if (Status status = withdraw_outdated(sweep, flights); !status) return status.error();
 
   Envelope envelope{along->name, along->label, along->unit, border.estimator, {}, 0, 0};
   std::size_t flown_cells = 0;
@@ -192,7 +195,7 @@ Result<Envelope> find_envelope(const Sweep& sweep, const EnvelopeOptions& option
     for (const auto& [line, value] : places) wanted.push_back(*grid->cells[line][value]);
     const Result<FlownSweep> flown = fly_cells(sweep, std::move(wanted), flights);
     if (!flown) return flown.error();
-    write_whole_progress(sweep, flights.folder, flown->progress);
+    write_whole_progress(sweep, flights, flown->progress);
     if (flown->cancelled) return Error{ErrorCode::kCancelled, "cancelled"};
     std::vector<bool> answers;
     for (std::size_t i = 0; i < places.size(); ++i) {

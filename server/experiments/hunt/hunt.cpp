@@ -47,8 +47,9 @@ class Hunter {
     flights.pictures_recur = note_pictures(cells);
     sweep_.chosen_cells->insert(sweep_.chosen_cells->end(), cells.begin(), cells.end());
     const Result<FlownSweep> flown = fly_cells(sweep_, std::move(cells), flights);
-    if (!flown) return flown.error();
-    result_.cancelled = flown->cancelled;
+    const bool is_stopped = !flown && flown.error().code == ErrorCode::kCancelled;
+    if (!flown && !is_stopped) return flown.error();
+    result_.cancelled = is_stopped || flown->cancelled;
     if (result_.cancelled) return {};
     std::vector<double> values;
     for (std::size_t i = 0; i < points.size(); ++i) {

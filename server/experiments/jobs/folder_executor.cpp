@@ -13,8 +13,8 @@
 namespace overfly::server::experiments {
 namespace {
 
-/// Workers in a row that may end without delivering a flight: a flight that ends its worker each
-/// time (by its memory) must not be flown for ever.
+/// Attempts in a row that may be lost: a flight that ends its worker each time (by its memory) must
+/// not be flown for ever.
 constexpr int kMostLost = 5;
 /// Ids have six hexadecimal digits for the number.
 constexpr std::size_t kMostNumbers = 0x1000000;
@@ -98,6 +98,7 @@ Status FolderExecutor::poll() {
   left_.clear();
   if (Status status = take_delivered(); !status) return status;
   if (Status status = find_lost(); !status) return status;
+  if (Status status = check_waiting(); !status) return status;
   if (options_.supply == nullptr) return {};
   return options_.supply->keep({jobs_.size(), jobs_.size() - flying_, delivered_}, most_memory_);
 }
@@ -191,6 +192,22 @@ Status FolderExecutor::find_lost() {
   return withdraw_unknown(*taken);
 }
 
+Status FolderExecutor::check_waiting() {
+  const Result<std::vector<std::string>> taken = folder_.taken();
+  if (!taken) return taken.error();
+  const auto waits = [&](const auto& job) {
+    return !std::binary_search(taken->begin(), taken->end(), job.first);
+  };
+  auto next = std::find_if(jobs_.upper_bound(checked_), jobs_.end(), waits);
+  if (next == jobs_.end()) next = std::find_if(jobs_.begin(), jobs_.end(), waits);
+  if (next == jobs_.end()) return {};
+  checked_ = next->first;
+  const Result<OpenJob> job = folder_.read_job(checked_);
+  // One that is not there was delivered meanwhile or is found by the next look.
+  if (job || job.error().code == ErrorCode::kNotFound) return {};
+  return lose(checked_, job.error().message, false);
+}
+
 Status FolderExecutor::lose(const std::string& id, const std::string& reason, bool given_back) {
   if (Status status = folder_.withdraw(id); !status) return status;
   const auto found = jobs_.find(id);
@@ -201,7 +218,7 @@ Status FolderExecutor::lose(const std::string& id, const std::string& reason, bo
         {job.flight.id,
          0.0,
          false,
-         std::to_string(job.lost) + " workers ended while they flew it; the last: " + reason});
+         std::to_string(job.lost) + " attempts to fly it were lost; the last: " + reason});
     return {};
   }
   if (options_.warn) options_.warn(reason + "; its flight is flown again");

@@ -50,7 +50,7 @@ class FolderExecutor : public FlightExecutor {
 
   struct Job {
     FlightJob flight;
-    int lost = 0;                              ///< workers that ended without delivering it
+    int lost = 0;                              ///< attempts without a delivery
     std::optional<std::string> holder;         ///< the worker that has taken it
     std::optional<Clock::time_point> dropped;  ///< since when the worker does not name it
   };
@@ -66,6 +66,9 @@ class FolderExecutor : public FlightExecutor {
   Status poll();
   Status take_delivered();
   Status find_lost();
+  /// Reads the file of one job that no worker has taken, each time the next one: workers wait for
+  /// a file that they cannot read.
+  Status check_waiting();
   Status withdraw_unknown(const std::vector<std::string>& taken);
   /// Why a worker will not deliver a job that it has taken; empty as long as it may.
   /// @param given_back  set if the worker ended in order
@@ -78,6 +81,7 @@ class FolderExecutor : public FlightExecutor {
   std::map<std::string, Job> jobs_;          ///< by id
   std::map<std::string, std::string> left_;  ///< jobs of an earlier controller: flight -> id
   std::map<std::string, Worker> workers_;    ///< that hold a job, by name
+  std::string checked_;                      ///< id of the job whose file was read last
   std::deque<EndedFlight> ended_;
   RunMemory most_memory_;
   std::size_t next_number_ = 0;

@@ -157,8 +157,15 @@ Status JobWorker::take_jobs() {
     if (refused_.count(id) != 0) continue;
     if (std::binary_search(taken_jobs->begin(), taken_jobs->end(), id)) continue;
     const Result<OpenJob> job = folder_.read_job(id);
-    if (!job && job.error().code == ErrorCode::kNotFound) continue;  // It is over by now.
-    const std::string reason = job ? refusal(*job) : job.error().message;
+    if (!job) {
+      // Not found: it is over by now. Others may be readable at the next look.
+      const bool is_over = job.error().code == ErrorCode::kNotFound;
+      if (!is_over && unread_.insert(id).second && options_.warn) {
+        options_.warn("flight " + id + ": " + job.error().message + "; tried again");
+      }
+      continue;
+    }
+    const std::string reason = refusal(*job);
     if (!reason.empty()) {
       refused_.insert(id);
       if (options_.warn) options_.warn("flight " + id + " is not flown here: " + reason);

@@ -79,7 +79,8 @@ class JobWorker {
   WorkerState state_;
   std::map<std::string, RunMemory> flights_;  ///< in the air, by job
   std::vector<JobDelivery> deliveries_;       ///< flown, not written yet
-  std::set<std::string> refused_;             ///< jobs that were reported
+  std::set<std::string> refused_;             ///< jobs that are not for this machine
+  std::set<std::string> unread_;              ///< jobs whose files were reported
   std::size_t started_ = 0;
   std::size_t flown_ = 0;  ///< delivered
   bool was_open_ = false;  ///< the folder, since this worker started

@@ -39,7 +39,16 @@ std::vector<Value> values_at(const ReadableFile& file,
 /// What a program or library says of the libraries that it needs.
 struct Needs {
   std::vector<std::string> names;
-  std::vector<fs::path> folders;  ///< where they are looked for first
+  std::vector<fs::path> rpath;    ///< empty if there is a run path
+  std::vector<fs::path> runpath;  ///< searched after LD_LIBRARY_PATH
+  bool has_runpath = false;
+};
+
+/// A file of a program, and the one that needs it.
+struct LoadedFile {
+  fs::path file;
+  std::optional<std::size_t> loader;  ///< index; empty for the program
+  Needs needs;
 };
 
 std::vector<std::string> parts_of(std::string_view list) {
@@ -60,6 +69,16 @@ fs::path without_origin(std::string folder, const fs::path& file) {
     if (at != std::string::npos) folder.replace(at, name.size(), file.parent_path().string());
   }
   return folder;
+}
+
+/// @param list  of DT_RPATH or DT_RUNPATH
+std::vector<fs::path> folders_of(const std::string& list, const fs::path& file) {
+  std::vector<fs::path> folders;
+  for (const std::string& folder : parts_of(list)) {
+    if (folders.size() == kMostFolders) break;
+    folders.push_back(without_origin(folder, file));
+  }
+  return folders;
 }
 
 /// The offset in the file of an address in memory.
@@ -109,13 +128,33 @@ Needs needs_of(const fs::path& file) {
     const char* const begin = texts.data() + entry.d_un.d_val;
     const std::string text(begin, ::strnlen(begin, texts.size() - entry.d_un.d_val));
     if (entry.d_tag == DT_NEEDED && needs.names.size() < kMostNames) needs.names.push_back(text);
-    if (entry.d_tag != DT_RUNPATH && entry.d_tag != DT_RPATH) continue;
-    for (const std::string& folder : parts_of(text)) {
-      if (needs.folders.size() == kMostFolders) break;
-      needs.folders.push_back(without_origin(folder, file));
+    if (entry.d_tag == DT_RPATH) needs.rpath = folders_of(text, file);
+    if (entry.d_tag == DT_RUNPATH) {
+      needs.runpath = folders_of(text, file);
+      needs.has_runpath = true;
     }
   }
+  if (needs.has_runpath) needs.rpath.clear();
   return needs;
+}
+
+/// Where the dynamic linker looks for what a file needs, before the system's folders (ld.so(8)): in
+/// the RPATH of the file and of those that needed it, unless it has a RUNPATH; in
+/// LD_LIBRARY_PATH; in its RUNPATH.
+std::vector<fs::path> search_folders(const std::vector<LoadedFile>& files,
+                                     std::size_t file,
+                                     const std::vector<std::string>& library_path) {
+  std::vector<fs::path> folders;
+  const Needs& needs = files[file].needs;
+  if (!needs.has_runpath) {
+    for (std::optional<std::size_t> i = file; i; i = files[*i].loader) {
+      const std::vector<fs::path>& rpath = files[*i].needs.rpath;
+      folders.insert(folders.end(), rpath.begin(), rpath.end());
+    }
+  }
+  folders.insert(folders.end(), library_path.begin(), library_path.end());
+  folders.insert(folders.end(), needs.runpath.begin(), needs.runpath.end());
+  return folders;
 }
 
 }  // namespace
@@ -124,22 +163,31 @@ std::vector<fs::path> program_files(const std::string& program) {
   const Result<fs::path> found = process::find_program(program);
   if (!found) return {};
   const char* const variable = std::getenv("LD_LIBRARY_PATH");
-  const std::vector<std::string> everywhere = parts_of(variable != nullptr ? variable : "");
-  std::vector<fs::path> files{*found};
+  const std::vector<std::string> library_path = parts_of(variable != nullptr ? variable : "");
+  std::vector<LoadedFile> files;
+  files.push_back({*found, std::nullopt, needs_of(*found)});
+  // The first search for a name decides: the linker does not look for it again.
+  std::set<std::string> names;
   std::set<fs::path> seen{*found};
   for (std::size_t i = 0; i < files.size() && files.size() < kMostLibraries; ++i) {
-    Needs needs = needs_of(files[i]);
-    needs.folders.insert(needs.folders.end(), everywhere.begin(), everywhere.end());
-    for (const std::string& name : needs.names) {
-      for (const fs::path& folder : needs.folders) {
-        const fs::path library = (folder / name).lexically_normal();
+    const std::vector<fs::path> folders = search_folders(files, i, library_path);
+    const std::vector<std::string> needed = files[i].needs.names;
+    for (const std::string& name : needed) {
+      if (!names.insert(name).second) continue;
+      for (const fs::path& folder : folders) {
+        fs::path library = (folder / name).lexically_normal();
         if (!check_regular_file(library).ok()) continue;
-        if (seen.insert(library).second) files.push_back(library);
+        if (seen.insert(library).second) {
+          Needs needs = needs_of(library);
+          files.push_back({std::move(library), i, std::move(needs)});
+        }
         break;
       }
     }
   }
-  return files;
+  std::vector<fs::path> paths;
+  for (LoadedFile& file : files) paths.push_back(std::move(file.file));
+  return paths;
 }
 
 }  // namespace overfly::server::experiments

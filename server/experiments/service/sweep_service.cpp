@@ -228,10 +228,12 @@ Status SweepService::fly_into(const Flight& flight, const fs::path& folder) {
     if (!envelope && envelope.error().code == ErrorCode::kCancelled) return {};
     if (!envelope) return envelope.error();
     if (Status status = write_envelope(folder, *envelope); !status) return status;
-    const Result<FlownSweep> flown = read_sweep(sweep, folder);
+    const Result<FlownSweep> flown = read_sweep(sweep, folder, options.cancel);
+    if (!flown && flown.error().code == ErrorCode::kCancelled) return {};
     return flown ? write_summary(sweep, *flown, folder) : Status(flown.error());
   }
   const Result<FlownSweep> flown = fly_sweep(sweep, options);
+  if (!flown && flown.error().code == ErrorCode::kCancelled) return {};
   if (!flown) return flown.error();
   return write_summary(sweep, *flown, folder);
 }

@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using overfly::testing::read_text;
+using overfly::testing::write_text;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -129,8 +130,7 @@ TEST_F(FolderSweep, AFlightThatEndsItsWorkerEachTimeIsNotFlownForEver) {
   const FlownSweep& flown = finished();
   EXPECT_EQ(flown.progress.failed, 1U);
   ASSERT_THAT(flown.results.newest(), SizeIs(1));
-  EXPECT_THAT(flown.results.newest().front()->error,
-              HasSubstr("6 workers ended while they flew it"));
+  EXPECT_THAT(flown.results.newest().front()->error, HasSubstr("6 attempts to fly it were lost"));
 }
 
 /// The controller is killed while workers fly. The next one takes their flights over.
@@ -275,6 +275,39 @@ TEST_F(FolderSweep, AJobWhoseFilesVanishIsFlownAgain) {
   ASSERT_TRUE(step_until_over(own));
   EXPECT_EQ(flights_of(finished(), folder()), 2);
   EXPECT_THAT(warnings_, Contains(HasSubstr("was removed from outside")));
+}
+
+/// A shared file system may show a file's name before its content, or lose the content.
+TEST_F(FolderSweep, AJobWhoseFileIsDamagedIsPublishedAgain) {
+  write_program();
+  const Sweep two = sweep(kTwoSpeeds);
+  control(two);
+  const JobFolder jobs(folder());
+  const std::string id = jobs.open_jobs()->back();
+  write_text(folder() / "jobs/open" / (id + ".json"), "{");
+  JobWorker own = worker();
+  ASSERT_TRUE(step_until_over(own));
+  EXPECT_EQ(flights_of(finished(), folder()), 2);
+  EXPECT_FALSE(jobs.is_open(id));
+  EXPECT_THAT(warnings_, Contains(HasSubstr(id + ".json")));
+}
+
+/// A read that fails once does not make a worker leave the flight for good.
+TEST_F(FolderSweep, AWorkerReadsAJobAgainThatItCouldNotRead) {
+  write_program();
+  fs::create_directories(folder());
+  write_text(folder() / "sweep.json", "{}");
+  JobWorker own = worker();
+  const JobFolder jobs(folder());
+  ASSERT_TRUE(jobs.publish({"000000-0123abcd", "ab", kVersion, 1.0, {}}).ok());
+  const fs::path file = folder() / "jobs/open/000000-0123abcd.json";
+  const std::string text = read_text(file);
+  write_text(file, text.substr(0, text.size() / 2));
+  ASSERT_TRUE(step_until(own, [&] { return !worker_warnings_.empty(); }));
+  EXPECT_THAT(worker_warnings_, Contains(HasSubstr("000000-0123abcd.json")));
+  write_text(file, text);
+  ASSERT_TRUE(step_until(own, [&] { return flights() == 1; }));
+  EXPECT_THAT(worker_warnings_, SizeIs(1));
 }
 
 /// A worker that lives but does not know its flight any more must not keep it for ever.

@@ -259,6 +259,63 @@ TEST_F(BuiltProgram, KeyFollowsTheLibraryThatItBringsAlong) {
   EXPECT_EQ(program_files(program.string()), std::vector<fs::path>{program});
 }
 
+/// LD_LIBRARY_PATH, as long as it lives.
+class LibraryPath {
+ public:
+  explicit LibraryPath(const fs::path& folder) {
+    if (const char* const value = std::getenv("LD_LIBRARY_PATH")) before_ = value;
+    ::setenv("LD_LIBRARY_PATH", folder.c_str(), 1);
+  }
+  ~LibraryPath() {
+    if (before_) {
+      ::setenv("LD_LIBRARY_PATH", before_->c_str(), 1);
+    } else {
+      ::unsetenv("LD_LIBRARY_PATH");
+    }
+  }
+  LibraryPath(const LibraryPath&) = delete;
+  LibraryPath& operator=(const LibraryPath&) = delete;
+
+ private:
+  std::optional<std::string> before_;
+};
+
+/// As the dynamic linker: RPATH, also that of the file that needs this one, then LD_LIBRARY_PATH,
+/// then RUNPATH.
+TEST_F(BuiltProgram, LibrariesAreLookedForInTheOrderOfTheDynamicLinker) {
+  const fs::path program = root() / "program";
+  const fs::path own = root() / "lib/libanswer.so";
+  const fs::path other = root() / "other/libanswer.so";
+  fs::create_directories(root() / "other");
+  write_text(root() / "answer.cpp", "int answer() { return 7; }\n");
+  ASSERT_TRUE(run("c++ -shared -fPIC answer.cpp -o other/libanswer.so"));
+  const auto link = [&](const std::string& tags) {
+    return run("c++ main.cpp -o program -Wl," + tags + ",-rpath,'$ORIGIN/lib' -Llib -lanswer");
+  };
+  // What the program returns shows which library the dynamic linker has loaded.
+  const auto answer = [&] {
+    return std::system(("'" + program.string() + "'").c_str()) >>
+           8;  // NOLINT(hicpp-signed-bitwise)
+  };
+  const LibraryPath path(other.parent_path());
+  ASSERT_TRUE(link("--enable-new-dtags"));  // RUNPATH
+  EXPECT_EQ(answer(), 7);
+  EXPECT_EQ(program_files(program.string()), (std::vector<fs::path>{program, other}));
+  ASSERT_TRUE(link("--disable-new-dtags"));  // RPATH
+  EXPECT_EQ(answer(), 1);
+  EXPECT_EQ(program_files(program.string()), (std::vector<fs::path>{program, own}));
+  // A library without search folders of its own, of a program with an RPATH.
+  write_text(root() / "between.cpp", "int answer(); int between() { return answer(); }\n");
+  ASSERT_TRUE(run("c++ -shared -fPIC between.cpp -o lib/libbetween.so -Llib -lanswer"));
+  write_text(root() / "main.cpp", "int between(); int main() { return between(); }\n");
+  ASSERT_TRUE(
+      run("c++ main.cpp -o program -Wl,--disable-new-dtags,-rpath,'$ORIGIN/lib' -Llib "
+          "-lbetween -Wl,-rpath-link,lib"));
+  EXPECT_EQ(answer(), 1);
+  EXPECT_EQ(program_files(program.string()),
+            (std::vector<fs::path>{program, root() / "lib/libbetween.so", own}));
+}
+
 TEST_F(BuiltProgram, BrokenProgramsHaveNoLibraries) {
   const fs::path program = root() / "program";
   const std::string whole = overfly::testing::read_text(program);
