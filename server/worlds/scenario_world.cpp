@@ -73,6 +73,23 @@ Result<OpenedWorld> open_scenario_world(const Scenario& scenario,
   return opened;
 }
 
+std::vector<terrain::WorldFile> scenario_world_files(const Scenario& scenario) {
+  terrain::WorldSpec spec;
+  const auto* const manifest = std::get_if<std::filesystem::path>(&scenario.world);
+  if (manifest != nullptr) {
+    Result<terrain::WorldSpec> read = terrain::read_world_manifest(*manifest, scenario.sources);
+    if (!read) return {};
+    spec = std::move(*read);
+  } else if (const auto* layers = std::get_if<terrain::WorldSpec>(&scenario.world)) {
+    spec = *layers;
+    spec.sources = scenario.sources;
+  }
+  if (!check_confined(spec, "")) return {};
+  std::vector<terrain::WorldFile> files = terrain::world_files(spec);
+  if (manifest != nullptr) files.push_back({*manifest, terrain::file_identity(*manifest)});
+  return files;
+}
+
 bool world_must_be_made(const Scenario& scenario) {
   const auto* builtin = std::get_if<Scenario::BuiltinWorld>(&scenario.world);
   std::error_code ignored;

@@ -32,6 +32,10 @@ struct OpenedWorld {
 [[nodiscard]] Result<OpenedWorld> open_scenario_world(
     const Scenario& scenario, const std::function<bool(double)>& progress = {});
 
+/// The files of the scenario's layers, as terrain::world_files, and its manifest. Empty for the
+/// built-in world, and if the files cannot be read or must not be: opening the world reports that.
+[[nodiscard]] std::vector<terrain::WorldFile> scenario_world_files(const Scenario& scenario);
+
 /// Whether the scenario's world is the built-in one and has to be made first.
 [[nodiscard]] bool world_must_be_made(const Scenario& scenario);
 

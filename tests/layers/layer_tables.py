@@ -238,7 +238,7 @@ MAY_INCLUDE = {
                                    "server/record/", "server/scoring/",
                                    "server/runs/run_memory.hpp"],
     "server/experiments/keys": ["core/", "server/files/", "server/scenario/scenario.hpp",
-                                "server/record/", "vo_bridges/process/child/program.hpp"],
+                                "server/record/", "server/worlds/", "vo_bridges/process/child/program.hpp"],
     "server/experiments/comparison": ["core/", "evaluation", "evaluation/statistics",
                                       "server/files/", "server/scoring/", "server/experiments"],
     "server/experiments/pictures": ["core/", "server/files/", "server/scenario/",

@@ -8,7 +8,9 @@
 
 #include "server/experiments/keys/program_files.hpp"
 #include "server/experiments/keys/script_modules.hpp"
+#include "server/scenario/document/scenario_file.hpp"
 #include "tests/server/support/server_fixture.hpp"
+#include "tests/support/synthetic_world.hpp"
 
 namespace overfly::server::experiments {
 namespace {
@@ -85,6 +87,89 @@ TEST(FlightKey, FollowsTheDataOfTheWorld) {
   scenario.resolved["world"] = {{"manifest", (folder.path() / "world.json").string()}};
   EXPECT_NE(flight_key(scenario), of_large);
   EXPECT_NE(flight_key(scenario), later);
+}
+
+/// A scenario with layers of its own: elevation in the folder `data`, imagery of a virtual raster
+/// with a source elsewhere, next to the scenario.
+class LayersOfAFlight : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(root() / "data");
+    fs::create_directories(root() / "tiles");
+    write_text(root() / "data/elevation.tif", "heights");
+    write_tile(1);
+    write_text(root() / "images.vrt",
+               R"(<VRTDataset rasterXSize="64" rasterYSize="64"><SRS>EPSG:32616</SRS>
+<GeoTransform>582700, 10, 0, 4357300, 0, -10</GeoTransform>
+<VRTRasterBand dataType="Byte" band="1"><SimpleSource>
+<SourceFilename relativeToVRT="1">tiles/a.tif</SourceFilename><SourceBand>1</SourceBand>
+</SimpleSource></VRTRasterBand></VRTDataset>)");
+  }
+  void write_tile(unsigned seed) {
+    overfly::testing::GeoTiff tile;
+    tile.image = overfly::testing::textured_image(64, 64, 1, seed);
+    tile.left = 582700.0;
+    tile.top = 4357300.0;
+    tile.pixel = 10.0;
+    overfly::testing::write_geotiff(root() / "tiles/a.tif", tile);
+  }
+  [[nodiscard]] std::string key() const {
+    Json document = server::testing::small_document();
+    document["data"] = "data";
+    document["world"] = Json::parse(
+        R"({"imagery": [{"file": "./images.vrt", "attribution": "x"}],
+            "elevation": [{"file": "elevation.tif", "vertical_datum": "ellipsoid", "attribution": "x"}]})");
+    const Result<Scenario> scenario = resolve_scenario(document, {}, root());
+    EXPECT_TRUE(scenario.ok()) << (scenario.ok() ? "" : scenario.error().message);
+    return flight_key(*scenario);
+  }
+  [[nodiscard]] const fs::path& root() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(LayersOfAFlight, CountWhereverTheyLie) {
+  const std::string first = key();
+  EXPECT_EQ(key(), first);
+  write_text(root() / "data/elevation.tif", "HEIGHTS");
+  const std::string other_heights = key();
+  EXPECT_NE(other_heights, first) << "in the data folder";
+  write_tile(2);
+  const std::string other_tile = key();
+  EXPECT_NE(other_tile, other_heights) << "a source of a virtual raster";
+  write_text(root() / "images.vrt.aux.xml", "<PAMDataset/>");
+  EXPECT_NE(key(), other_tile) << "a side-car";
+}
+
+TEST_F(LayersOfAFlight, OtherFilesOfTheDataFolderDoNotCount) {
+  const std::string first = key();
+  fs::create_directories(root() / "data/sweep/runs");
+  write_text(root() / "data/sweep/results.jsonl", "{}");
+  write_text(root() / "data/notes.txt", "of the flight");
+  EXPECT_EQ(key(), first);
+}
+
+/// A mapping of CSV logs may name a data folder of its own.
+TEST(FlightKey, FollowsThePiecesOfAMappingInItsDataFolder) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "logs");
+  write_text(folder.path() / "logs/gps.csv", "1,2,3");
+  write_text(folder.path() / "own.csv", "4,5,6");
+  write_text(folder.path() / "mapping.json",
+             R"({"csv_mapping_version": 1, "data": "logs",
+                 "pieces": [{"file": "gps.csv"}, {"file": "./own.csv"}]})");
+  const auto key = [&] {
+    Scenario scenario = server::testing::small_scenario({});
+    scenario.resolved["flight"] = {{"log", {{"file", (folder.path() / "mapping.json").string()}}}};
+    return flight_key(scenario);
+  };
+  const std::string first = key();
+  write_text(folder.path() / "logs/gps.csv", "1,2,4");
+  const std::string changed = key();
+  EXPECT_NE(changed, first);
+  write_text(folder.path() / "own.csv", "4,5,7");
+  EXPECT_NE(key(), changed);
 }
 
 TEST(ResultKey, FollowsFlightParametersAndFiles) {
