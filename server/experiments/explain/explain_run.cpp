@@ -276,6 +276,7 @@ class Explainer {
     if (!*result_.reproduced_with_other_seed) return {};
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (has_failed((*flown)[i + 1])) withdraw(found[i]);
+      if (has_survived((*flown)[i + 1])) result_.confirmed.push_back(found[i]);
     }
     if (result_.withdrawn.empty() || !result_.necessary.empty()) return {};
     return change_with_other_seed();
@@ -302,7 +303,9 @@ class Explainer {
     const Flown flown = fly(plan);
     if (!flown) return flown.error();
     for (std::size_t i = 0; i < causes.size(); ++i) {
-      if (has_survived((*flown)[i])) result_.necessary.push_back(causes[i]);
+      if (!has_survived((*flown)[i])) continue;
+      result_.necessary.push_back(causes[i]);
+      result_.confirmed.push_back(causes[i]);
     }
     has_first_seed_causes_ = false;
     return {};

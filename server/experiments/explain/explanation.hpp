@@ -68,6 +68,9 @@ struct Explanation {
   std::vector<Cause> not_changed;
   /// The necessary causes, if each was tested and none is sufficient: it takes them together.
   std::vector<Cause> together;
+  /// Those of the necessary causes without which the estimator survives with other random numbers
+  /// too; the others were not flown with them, or have no result.
+  std::vector<Cause> confirmed;
   /// Without these the estimator survived, but with other random numbers it fails without them too:
   /// they are not named.
   std::vector<Cause> withdrawn;

@@ -78,6 +78,7 @@ Json json_from(const Explanation& explanation, const std::filesystem::path& fold
           {"necessary", names_of(explanation.necessary)},
           {"not_changed", names_of(explanation.not_changed)},
           {"together", names_of(explanation.together)},
+          {"confirmed", names_of(explanation.confirmed)},
           {"withdrawn", names_of(explanation.withdrawn)},
           {"pair", names_of(explanation.pair)},
           {"margin", margin},

@@ -75,10 +75,24 @@ std::string other_seed_words(const Explanation& explanation) {
     return "With other random numbers the estimator survives: chance decides this flight, and the "
            "causes above are uncertain.";
   }
-  if (explanation.withdrawn.empty()) return "With other random numbers the result is the same.";
+  Causes unconfirmed = explanation.necessary;
+  std::erase_if(unconfirmed, [&](Cause cause) { return holds(explanation.confirmed, cause); });
+  const std::string rest =
+      unconfirmed.empty()
+          ? ""
+          : " Not tried with other random numbers: " + list_words(unconfirmed, words_for) + ".";
+  if (explanation.withdrawn.empty()) {
+    if (unconfirmed.empty()) return "With other random numbers the result is the same.";
+    const std::string survives =
+        explanation.confirmed.empty()
+            ? ""
+            : ", and survives " + list_words(explanation.confirmed, words_without);
+    return "With other random numbers it fails again" + survives + "." + rest;
+  }
   return "It survived " + list_words(explanation.withdrawn, words_without) +
          " by chance: with other random numbers it fails nevertheless, so that " +
-         (explanation.withdrawn.size() > 1 ? "these are" : "this is") + " not named as a cause.";
+         (explanation.withdrawn.size() > 1 ? "these are" : "this is") + " not named as a cause." +
+         rest;
 }
 
 void add_limits(const Explanation& explanation, std::vector<std::string>& sentences) {

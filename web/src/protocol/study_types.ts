@@ -93,6 +93,8 @@ export interface Explanation {
   untried: { cause: string; reason: string }[];
   /** Causes that were flown without all others; absent in older studies. */
   sufficiency_tested?: string[];
+  /** Those of the necessary causes that were found with another seed too; absent in older studies. */
+  confirmed?: string[];
   /** Without these it survived, but not with other random numbers; absent in older studies. */
   withdrawn?: string[];
   /** What causes are called. */

@@ -225,6 +225,24 @@ TEST_F(ExplainRun, ChanceIsSaid) {
   EXPECT_THAT(sentences_of(*explanation), ::testing::Contains(HasSubstr("chance decides")));
 }
 
+/// The limit of flights lets one of two causes be flown with other random numbers.
+TEST_F(ExplainRun, SaysWhichCausesWereNotTriedWithOtherRandomNumbers) {
+  const auto all = explain("has blur && has noise");
+  ASSERT_TRUE(all.ok()) << all.error().message;
+  EXPECT_THAT(all->confirmed, UnorderedElementsAre(Cause::kBlur, Cause::kNoise));
+  EXPECT_THAT(sentences_of(*all), ::testing::Contains(HasSubstr("the result is the same")));
+  fs::remove_all(folder());
+  const auto some = explain("has blur && has noise", 10);
+  ASSERT_TRUE(some.ok()) << some.error().message;
+  EXPECT_THAT(some->necessary, UnorderedElementsAre(Cause::kBlur, Cause::kNoise));
+  ASSERT_EQ(some->confirmed.size(), 1U);
+  const std::vector<std::string> sentences = sentences_of(*some);
+  EXPECT_THAT(sentences,
+              ::testing::Contains(HasSubstr("Not tried with other random numbers: the ")));
+  EXPECT_THAT(sentences, ::testing::Not(::testing::Contains(HasSubstr("result is the same"))));
+  EXPECT_EQ(json_from(*some, folder()).at("confirmed").size(), 1U);
+}
+
 /// Without noise the estimator survives with one set of random numbers only.
 TEST_F(ExplainRun, ACauseThatFailsTheSecondTestIsNotNamed) {
   const auto explanation = explain("has noise || ! has seed1");
