@@ -7,11 +7,11 @@
 namespace overfly::evaluation {
 
 double sample_quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
   const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(std::floor(place));
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
+  const auto below = values.begin() + static_cast<std::ptrdiff_t>(std::floor(place));
+  std::nth_element(values.begin(), below, values.end());
+  const auto above = below + 1 == values.end() ? below : std::min_element(below + 1, values.end());
+  return *below + (place - std::floor(place)) * (*above - *below);
 }
 
 Quartiles quartiles_of(const std::vector<double>& values) {

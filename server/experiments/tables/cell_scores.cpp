@@ -107,26 +107,24 @@ std::optional<double> start_scale_percent(const FlightScore& flight) {
   return 100.0 * (start->second.S_world_vo.scale / fit->second.S_world_vo.scale - 1.0);
 }
 
-CellScores scores_of(const SweepScores& scores,
-                     const nlohmann::json& cell,
-                     const std::string& estimator) {
+/// @param flights  of one cell and estimator
+CellScores scores_of(const std::vector<const FlightScore*>& flights) {
   CellScores row;
-  row.cell = cell;
-  row.estimator = estimator;
+  row.cell = flights.front()->cell;
+  row.estimator = flights.front()->estimator;
   std::vector<ErrorValues> values(all_conventions().size());
   std::vector<double> start_scales_percent;
-  for (const FlightScore& flight : scores.flights) {
-    if (flight.estimator != estimator || flight.cell != cell) continue;
-    row.baseline = is_baseline_estimator(flight.type);
+  for (const FlightScore* flight : flights) {
+    row.baseline = is_baseline_estimator(flight->type);
     ++row.flights;
-    row.initialised += flight.score.initialised_at_s ? 1 : 0;
-    row.completed += flight.outcome == Outcome::kCompleted ? 1 : 0;
-    row.texture_limited = row.texture_limited || flight.texture_limited;
-    ++row.outcomes[evaluation::to_string(flight.outcome)];
-    row.runs.push_back(flight.run);
-    keep(start_scales_percent, start_scale_percent(flight));
+    row.initialised += flight->score.initialised_at_s ? 1 : 0;
+    row.completed += flight->outcome == Outcome::kCompleted ? 1 : 0;
+    row.texture_limited = row.texture_limited || flight->texture_limited;
+    ++row.outcomes[evaluation::to_string(flight->outcome)];
+    row.runs.push_back(flight->run);
+    keep(start_scales_percent, start_scale_percent(*flight));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      add_flight_errors(flight, all_conventions()[i], values[i]);
+      add_flight_errors(*flight, all_conventions()[i], values[i]);
     }
   }
   row.start_scale_percent = spread_of(start_scales_percent);
@@ -165,11 +163,18 @@ const ErrorConvention& paper_convention() { return all_conventions()[0]; }
 const ErrorConvention& sim3_convention() { return all_conventions()[1]; }
 
 std::vector<CellScores> cell_scores(const SweepScores& scores) {
+  using Flights = std::vector<const FlightScore*>;
+  std::map<nlohmann::json, std::map<std::string, Flights>> flights;
+  for (const FlightScore& flight : scores.flights) {
+    flights[flight.cell][flight.estimator].push_back(&flight);
+  }
   std::vector<CellScores> rows;
   for (const nlohmann::json& cell : scores.cells) {
+    const auto of_cell = flights.find(cell);
+    if (of_cell == flights.end()) continue;
     for (const std::string& estimator : scores.estimators) {
-      CellScores row = scores_of(scores, cell, estimator);
-      if (row.flights > 0) rows.push_back(std::move(row));
+      const auto found = of_cell->second.find(estimator);
+      if (found != of_cell->second.end()) rows.push_back(scores_of(found->second));
     }
   }
   return rows;

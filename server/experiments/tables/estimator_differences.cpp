@@ -3,6 +3,8 @@
 #include <map>
 #include <optional>
 
+#include "core/cancel.hpp"
+
 namespace overfly::server::experiments {
 namespace {
 
@@ -62,10 +64,12 @@ bool baseline_in(const std::vector<CellScores>& rows, const std::string& estimat
 
 }  // namespace
 
-std::vector<EstimatorDifference> estimator_differences(const std::vector<CellScores>& rows,
-                                                       const std::vector<std::string>& estimators,
-                                                       std::size_t convention,
-                                                       const DifferenceOptions& options) {
+Result<std::vector<EstimatorDifference>> estimator_differences(
+    const std::vector<CellScores>& rows,
+    const std::vector<std::string>& estimators,
+    std::size_t convention,
+    const DifferenceOptions& options,
+    const std::atomic<bool>* cancel) {
   const std::pair<const char*, Quantity> quantities[] = {
       {"position_m", &CellErrors::position_m}, {"rotation_deg", &CellErrors::rotation_deg}};
   std::vector<EstimatorDifference> results;
@@ -76,6 +80,7 @@ std::vector<EstimatorDifference> estimator_differences(const std::vector<CellSco
       const auto first = medians_by_cell(rows, estimators[i], convention, quantity);
       for (std::size_t j = i + 1; j < estimators.size(); ++j) {
         if (baseline_in(rows, estimators[i]) && baseline_in(rows, estimators[j])) continue;
+        if (is_cancelled(cancel)) return Error{ErrorCode::kCancelled, "cancelled"};
         EstimatorDifference result =
             compared(first, medians_by_cell(rows, estimators[j], convention, quantity), options);
         result.first = estimators[i];

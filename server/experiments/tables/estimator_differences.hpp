@@ -43,10 +43,12 @@ struct EstimatorDifference {
 /// Every pair of estimators, but for pairs of baselines. Better means: the interval does not
 /// contain 0 and the adjusted p-value is at most 0.05.
 /// @param convention  index of all_conventions()
-[[nodiscard]] std::vector<EstimatorDifference> estimator_differences(
+/// Errors: kCancelled, within the time of one comparison.
+[[nodiscard]] Result<std::vector<EstimatorDifference>> estimator_differences(
     const std::vector<CellScores>& rows,
     const std::vector<std::string>& estimators,
     std::size_t convention,
-    const DifferenceOptions& options);
+    const DifferenceOptions& options,
+    const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace overfly::server::experiments

@@ -135,13 +135,17 @@ std::string csv_spread(const std::optional<Spread>& spread) {
 
 }  // namespace
 
-Result<SweepTables> sweep_tables(SweepScores scores, const TableOptions& options) {
+Result<SweepTables> sweep_tables(SweepScores scores,
+                                 const TableOptions& options,
+                                 const std::atomic<bool>* cancel) {
   if (Status status = check_counterparts(scores, options); !status) return status.error();
   SweepTables tables;
   tables.rows = cell_scores(scores);
   for (std::size_t i = 0; i < all_conventions().size(); ++i) {
-    tables.differences.push_back(
-        estimator_differences(tables.rows, scores.estimators, i, options.differences));
+    Result<std::vector<EstimatorDifference>> differences =
+        estimator_differences(tables.rows, scores.estimators, i, options.differences, cancel);
+    if (!differences) return differences.error();
+    tables.differences.push_back(std::move(*differences));
     tables.orderings.push_back(
         options.published
             ? ordering_agreements(

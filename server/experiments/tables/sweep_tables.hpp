@@ -22,15 +22,17 @@ struct TableOptions {
 /// Everything that the tables show.
 struct SweepTables {
   SweepScores scores;
-  std::vector<CellScores> rows;
+  std::vector<CellScores> rows;  ///< as cell_scores
   /// As all_conventions().
   std::vector<std::vector<EstimatorDifference>> differences;
   std::vector<std::vector<OrderingAgreement>> orderings;
 };
 
 /// Errors: kInvalidArgument for a counterpart that is no estimator of the sweep or no published
-/// name.
-[[nodiscard]] Result<SweepTables> sweep_tables(SweepScores scores, const TableOptions& options);
+/// name; kCancelled.
+[[nodiscard]] Result<SweepTables> sweep_tables(SweepScores scores,
+                                               const TableOptions& options,
+                                               const std::atomic<bool>* cancel = nullptr);
 
 /// The lowest error of each cell is highlighted; X: no flight counts; a dagger marks estimators
 /// that do not beat the best baseline of the cell.

@@ -6,13 +6,13 @@ namespace overfly::server::experiments {
 
 std::vector<CellRows> rows_by_cell(const SweepTables& tables) {
   std::vector<CellRows> cells;
+  auto row = tables.rows.begin();  // in the same order
   for (const nlohmann::json& cell : tables.scores.cells) {
     CellRows& found = cells.emplace_back();
     for (const std::string& estimator : tables.scores.estimators) {
-      const auto row = std::find_if(tables.rows.begin(), tables.rows.end(), [&](const auto& r) {
-        return r.estimator == estimator && r.cell == cell;
-      });
-      found.push_back(row == tables.rows.end() ? nullptr : &*row);
+      const bool has_row =
+          row != tables.rows.end() && row->estimator == estimator && row->cell == cell;
+      found.push_back(has_row ? &*row++ : nullptr);
     }
   }
   return cells;

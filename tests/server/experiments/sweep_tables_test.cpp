@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/experiments/tables/table_parts.hpp"
 #include "tests/server/experiments/sweep_tables_fixture.hpp"
 
 namespace overfly::server::experiments {
@@ -11,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using evaluation::Outcome;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
@@ -171,6 +173,33 @@ TEST_F(SweepTablesTest, ComparesEstimatorsOnCommonCells) {
   EXPECT_EQ(rotation->verdict, DifferenceVerdict::kPracticallyEqual);
   EXPECT_THAT(markdown(), HasSubstr("| one is better |"));
   EXPECT_THAT(markdown(), HasSubstr("practically equal (within 10 %)"));
+}
+
+/// Cells and estimators that flew in part of them only keep their places.
+TEST_F(SweepTablesTest, ARowBelongsToItsCellAndEstimator) {
+  add({"two", 100, 0, 4.0, 0.1});
+  add({"one", 50, 0, 1.0, 0.1});
+  add({"two", 150, 0, 3.0, 0.1});
+  add({"one", 150, 0, 2.0, 0.1});
+  const SweepTables made = tables({});
+  ASSERT_EQ(made.rows.size(), 4U);
+  std::vector<std::string> names;  // by cell
+  for (const CellRows& rows : rows_by_cell(made)) {
+    std::string& text = names.emplace_back();
+    for (const CellScores* row : rows) text += row == nullptr ? "-" : " " + row->estimator;
+  }
+  EXPECT_THAT(names, ElementsAre(" one--", "- two-", " one two-"));
+}
+
+TEST_F(SweepTablesTest, AreCancelled) {
+  add({"one", 50, 0, 1.0, 0.1});
+  add({"two", 50, 0, 2.0, 0.1});
+  Result<SweepScores> scores = read_sweep_scores(folder_);
+  ASSERT_TRUE(scores.ok());
+  const std::atomic<bool> cancel{true};
+  const auto cancelled = sweep_tables(std::move(*scores), {}, &cancel);
+  ASSERT_FALSE(cancelled.ok());
+  EXPECT_EQ(cancelled.error().code, ErrorCode::kCancelled);
 }
 
 TEST_F(SweepTablesTest, DecidesNothingOnFewCells) {

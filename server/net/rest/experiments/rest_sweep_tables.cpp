@@ -102,7 +102,7 @@ Result<HttpResponse> tables_of(const SweepRoutes& routes,
   for (std::string& problem : scores->problems) {
     problem = shown_without(routes.folder, "", std::move(problem));
   }
-  const auto tables = experiments::sweep_tables(std::move(*scores), query.options);
+  const auto tables = experiments::sweep_tables(std::move(*scores), query.options, cancel);
   if (!tables) return tables.error();
   const TextKind kind = text_kind_of(query.format);
   HttpResponse response =

@@ -35,7 +35,7 @@ Result<json> table_of(const fs::path& sweeps_folder,
   }
   // Their texts name folders of this machine.
   const std::size_t unreadable = std::exchange(scores->problems, {}).size();
-  const auto tables = experiments::sweep_tables(std::move(*scores), {});
+  const auto tables = experiments::sweep_tables(std::move(*scores), {}, cancel);
   if (!tables) return tables.error();
   json table = experiments::json_from(*tables);
   table.erase("problems");
