@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "renderer/raycast/block_places.hpp"
+#include "renderer/raycast/ground/posts_ahead.hpp"
 
 namespace overfly::renderer::raycast {
 
@@ -358,6 +359,10 @@ void build_band(const BlockSettings& settings,
   const int y = rays.top_px(row);
   const int rows = rays.top_px(row + 1) - y;
   for (int column = 0; column < rays.columns(); ++column) {
+    if (const int next = column + 1; next < rays.columns()) {
+      request_between(
+          {&upper[next].hit, &upper[next + 1].hit, &lower[next].hit, &lower[next + 1].hit});
+    }
     const int x = rays.left_px(column);
     const int columns = rays.left_px(column + 1) - x;
     builder.add({x,

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "renderer/raycast/cache_line.hpp"
 #include "renderer/raycast/ground/ground_caster.hpp"
 #include "renderer/raycast/ground/ray_grid.hpp"
 #include "renderer/raycast/ground/shutter.hpp"

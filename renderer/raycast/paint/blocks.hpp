@@ -3,10 +3,10 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "renderer/raycast/cache_line.hpp"
 #include "terrain/tile_source.hpp"
 
 namespace overfly::renderer::raycast {
@@ -38,9 +38,6 @@ struct Block {
   Bilinear4 lod{};
   Bilinear4 clear{};  ///< transmission of the air, 1 in a vacuum
 };
-
-/// Data of different threads is placed on different cache lines.
-inline constexpr std::size_t kCacheLineBytes = 64;
 
 /// The blocks of one row of cells, from left to right, and their tiles.
 struct alignas(kCacheLineBytes) Band {

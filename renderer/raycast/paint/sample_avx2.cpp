@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "renderer/raycast/cache_line.hpp"
 #include "renderer/raycast/paint/block_mips.hpp"
 #include "renderer/raycast/paint/sample.hpp"
 #include "renderer/raycast/paint/sample_weights.hpp"
@@ -247,8 +248,7 @@ struct Fetch {
     for (int plane = 0; plane < planes; ++plane) {
       const char* from = first + static_cast<std::size_t>(plane) * plane_bytes;
       const auto line = [&](int i) {
-        // As _mm_prefetch. GCC 12 removes calls of functions that use nothing but that.
-        asm volatile("prefetcht0 %0" : : "m"(from[kBytes * static_cast<std::size_t>(elements[i])]));
+        request_cache_line(&from[kBytes * static_cast<std::size_t>(elements[i])]);
       };
       if (all) {
         for (int i = 0; i < columns; ++i) line(i);
